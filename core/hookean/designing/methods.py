@@ -25,6 +25,7 @@ Floats = NDArray[np.float64]
 
 NO_STEP = "The search found no step that leads further; this is the best so far."
 WANDERS = 100  # iterations of SLSQP, after which it makes no headway
+MET = 1e-20  # part of the first objective: goals are met
 SLOW = 50  # evaluations of least squares, after which second derivatives are asked for
 ATTEMPTS = 4  # of a search with constraints, each from the best so far
 FLAT = 1e-30  # slopes of small weights or units are small: only none at all ends a search
@@ -57,6 +58,8 @@ def _least_squares(search: Search) -> Ended:
         taken += used
         if status == 0 and taken >= settings.max_iterations:
             return taken, DesignStatus.MAX_ITERATIONS, ""
+        if search.best[1] <= MET * search.first_value:
+            break
         polish(search)  # where goals conflict, steps by first derivatives alone lead on slowly
         start = np.clip(search.best[2], lower, upper)
     return taken, DesignStatus.CONVERGED, ""
