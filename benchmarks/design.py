@@ -87,6 +87,7 @@ def run(command: list[str]) -> tuple[dict[str, Any] | None, float]:
     """What a program answered, and the seconds of the whole process."""
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1",
                    "XLA_FLAGS": "--xla_cpu_multi_thread_eigen=false intra_op_parallelism_threads=1"}  # fmt: skip
+    environment.pop("PYTHONDONTWRITEBYTECODE", None)  # as installed: packages of both are compiled once
     start = used()
     done = subprocess.run(command, capture_output=True, text=True, env=environment, cwd=HERE, check=False)
     seconds = used() - start

@@ -112,3 +112,39 @@ def test_with_constraints_the_answer_does_not_use_their_slack() -> None:
     found = design(scene, variables, [{"kind": "load_path", "force": "b"}], [tip], tolerance=1e-10)
     assert found.status == "converged" and found.objective == pytest.approx(6.0, rel=1e-8)
     np.testing.assert_allclose(found.result.particles[:2, 2], [1, -1], atol=1e-6)
+
+
+def test_a_tie_over_different_values_is_reported() -> None:
+    """What is tied has one value: of stiffnesses 100 and 60 the mean, and the sag is that of a scene of 80."""
+    scene, even = string(), string(stiffness=80.0)
+    scene["forces"][0]["stiffness"] = [100.0, 60.0]
+    tied = {"force": "string", "field": "stiffness", "tie": "all"}
+    found = hookean.sensitivity(scene, goals=[PLACE], variables=[tied])
+    assert found.warnings == ["string.stiffness: values from 60 to 100 in the scene are not kept; each tie gets the"
+                              " mean of its values"]  # fmt: skip
+    plain = hookean.sensitivity(even, goals=[PLACE], variables=[tied])
+    assert plain.warnings == [] and found.value == pytest.approx(plain.value, rel=1e-9)
+    answer = design(scene, [tied], [{**PLACE, "target": -0.5}])
+    assert answer.warnings == found.warnings
+    driven = {**REST, "drives": [{"force": "string", "field": "stiffness", "factor": 50}]}
+    said = design(even, [driven], [{**PLACE, "target": -0.5}]).warnings
+    assert said == ["string.stiffness: values from 80 to 80 in the scene are not kept; it follows its variable"]
+
+
+@pytest.mark.parametrize("part", ["goals", "constraints"])
+@pytest.mark.parametrize(
+    "quantity", [{**PLACE, "particles": []}, {**LENGTH, "elements": []}, {**LENGTH, "elements": [], "total": True}]
+)
+def test_what_measures_nothing_is_refused(part: str, quantity: dict[str, Any]) -> None:
+    both: dict[str, Any] = {"goals": [], "constraints": [], part: [{**quantity, "lower": 0.5}]}
+    with pytest.raises(InputError, match="measures nothing, because no particles or elements are selected") as refused:
+        design(string(), [REST], **both)
+    assert refused.value.pointer == f"/{part}/0"
+
+
+def test_a_goal_that_no_variable_changes_is_reported() -> None:
+    """The height of a support beside that of the middle."""
+    goals = [{**PLACE, "particles": [0], "target": 1.0, "name": "support"}, {**PLACE, "target": -0.7}]
+    found = design(string(), [REST], goals)
+    assert found.warnings == ["no variable changes goal support at this shape"]
+    assert found.objective == pytest.approx(1.0, abs=1e-9)

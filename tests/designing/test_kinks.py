@@ -62,6 +62,23 @@ def test_what_rests_on_a_slope_slides_along_it() -> None:
     assert slope == pytest.approx((places[0] - places[1]) / 0.2, rel=1e-5) and said == []
 
 
+@pytest.mark.parametrize(("friction", "words"), [(0.0, []), (0.6, ["depends on its path"])])
+def test_friction_that_stops_particles_on_their_way_is_reported(friction: float, words: list[str]) -> None:
+    """The middle, pushed sideways, falls onto a floor: without friction derivatives are those of whole solves, with
+    friction where it stops depends on its path."""
+    ground = floor(-0.3, static_friction=friction, kinetic_friction=friction)
+
+    def pushed(k: float) -> dict[str, Any]:
+        scene = string(ground, stiffness=k)
+        scene["forces"][1]["vector"], scene["settings"] = [2.0, 0.0, -8.0], {"tolerance": 1e-12}
+        return scene
+
+    places = [relax(Scene.read(pushed(k))).particles[1, 0] for k in (100.1, 99.9)]
+    slope, said = slopes(pushed(100.0), "x")
+    assert len(said) == len(words) and all(word in each for word, each in zip(words, said, strict=True))
+    assert np.isclose(slope, (places[0] - places[1]) / 0.2, rtol=1e-5) == (not words)
+
+
 @pytest.mark.parametrize("name", ["floor", "collide_solid", "springs"])
 def test_a_contact_that_just_touches_is_reported(name: str) -> None:
     """At the height where the string hangs; a part of 1e-4 away from there nothing is, and both sides differ."""

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from hookean.designing.equilibrium import Equilibrium
 from hookean.designing.problem import Goal, Problem
-from hookean.designing.quantities.base import Quantity
+from hookean.designing.quantities.base import Quantity, measured
 from hookean.errors import InputError
 
 Floats = NDArray[np.float64]
@@ -19,11 +19,12 @@ class Aims:
 
     def __init__(self, problem: Problem, first: Equilibrium) -> None:
         self.goals, self.constraints = problem.goals, problem.constraints
-        values = self.values(first)
+        values = [measured(g.quantity, first, f"/goals/{i}") for i, g in enumerate(self.goals)]
+        limited = [measured(c.quantity, first, f"/constraints/{i}") for i, c in enumerate(self.constraints)]
         self.ranges = [_range(i, goal, own) for i, (goal, own) in enumerate(zip(self.goals, values, strict=True))]
         self.limits = [
             _ends(f"/constraints/{i}", constraint.lower, constraint.upper, own)
-            for i, (constraint, own) in enumerate(zip(self.constraints, self.constraint_values(first), strict=True))
+            for i, (constraint, own) in enumerate(zip(self.constraints, limited, strict=True))
         ]
 
     def values(self, found: Equilibrium) -> list[Floats]:

@@ -25,6 +25,7 @@ Floats = NDArray[np.float64]
 
 NEAR = 1e-5  # part of the size of a constraint's values: nearer to its limit it limits
 SLIGHT = 1e-4  # part of a goal by which it would fall with unknowns of twice their size: less is rounding
+SMALL = 1e-3  # part of the objective: slopes of goals that are met are less
 AGAINST = -0.5  # cosine between slopes from which on goals conflict
 MOST = 400  # constraints that limit, above which no multipliers are worked out
 
@@ -38,6 +39,8 @@ class Gains:
     constraints: Floats
     conflicts: list[list[int]]
     left: Floats  # slopes (goals, u) by scaled unknowns that no limit holds
+    held: NDArray[np.bool_]  # unknowns (u,) at bounds
+    shares: Floats  # multipliers (k,) of all values of constraints in the slope of the objective
 
 
 def gains(search: Search, found: Equilibrium, y: Floats) -> Gains | None:
@@ -52,7 +55,7 @@ def gains(search: Search, found: Equilibrium, y: Floats) -> Gains | None:
     by: Floats = np.zeros((0, len(y)))
     shares: Floats = np.zeros((len(slopes), 0))
     if len(rows):
-        by = _constraint_slopes(search, found)[rows]
+        by = constraint_slopes(search, found)[rows]
         holds = _holding(by[:, ~held] * -sides[:, None], slopes[:, ~held].sum(axis=0), _both(search)[rows])
         by = np.where(holds[:, None], by, 0.0)
         shares = np.asarray(np.linalg.lstsq(by[:, ~held].T, slopes[:, ~held].T, rcond=1e-10)[0].T, np.float64)
@@ -60,8 +63,9 @@ def gains(search: Search, found: Equilibrium, y: Floats) -> Gains | None:
     side = np.where(lower == upper, 0.0, np.where(upper, 1.0, -1.0))
     constraints = np.zeros((len(slopes), sum(len(limit[0]) for limit in search.aims.limits)))
     constraints[:, rows] = -shares * sides
-    inner = np.where(held, 0.0, left)
-    return Gains(-left * side / search.scale, constraints, _conflicts(search, found, inner), inner)
+    inner, whole = np.where(held, 0.0, left), np.zeros(constraints.shape[1])
+    whole[rows] = shares.sum(axis=0)
+    return Gains(-left * side / search.scale, constraints, _conflicts(search, found, inner), inner, held, whole)
 
 
 def _holding(by: Floats, slope: Floats, both: NDArray[np.bool_]) -> NDArray[np.bool_]:
@@ -97,7 +101,8 @@ def at_minimum(search: Search) -> bool:
         return False
     whole, bounds = gained.left.sum(axis=0), gained.bounds.sum(axis=0)
     steepest = float(np.abs(_goal_slopes(search, found)).max(initial=0.0))
-    slight = np.sqrt(search.problem.settings.tolerance) * max(1e-3, steepest)
+    least = SMALL * max(search.first_value, abs(search.best[1]))
+    slight = np.sqrt(search.problem.settings.tolerance) * max(least, steepest)
     return bool(np.abs(whole).max(initial=0.0) <= slight and (bounds * search.scale >= -slight).all())
 
 
@@ -123,7 +128,8 @@ def _limiting(search: Search, found: Equilibrium) -> tuple[NDArray[np.int64], Fl
     return np.concatenate(rows), np.concatenate(sides)
 
 
-def _constraint_slopes(search: Search, found: Equilibrium) -> Floats:
+def constraint_slopes(search: Search, found: Equilibrium) -> Floats:
+    """Derivatives (k, u) of all values of constraints by scaled unknowns."""
     quantities = [(c.quantity, f"/constraints/{i}") for i, c in enumerate(search.problem.constraints)]
     return jacobian(found, search.unknowns, quantities) * search.scale
 

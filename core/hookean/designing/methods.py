@@ -15,6 +15,7 @@ from hookean.designing.feasible import nearer, off_zero
 from hookean.designing.gains import at_minimum
 from hookean.designing.levenberg import levenberg
 from hookean.designing.limits import AT_BOUND
+from hookean.designing.polish import polish
 from hookean.designing.sensitivity import jacobian
 
 if TYPE_CHECKING:
@@ -24,6 +25,8 @@ Floats = NDArray[np.float64]
 
 NO_STEP = "The search found no step that leads further; this is the best so far."
 WANDERS = 100  # iterations of SLSQP, after which it makes no headway
+MET = 1e-20  # part of the first objective: goals are met
+SLOW = 50  # evaluations of least squares, after which second derivatives are asked for
 ATTEMPTS = 4  # of a search with constraints, each from the best so far
 FLAT = 1e-30  # slopes of small weights or units are small: only none at all ends a search
 ROUNDING = 1e-13  # part of the objective: less is no change
@@ -42,25 +45,43 @@ Ended = tuple[int, DesignStatus, str]
 
 
 def _least_squares(search: Search) -> Ended:
-    from scipy.optimize import least_squares
-
     settings, (lower, upper) = search.problem.settings, search.bounds
     wide = lower < upper
     if not wide.all():  # what cannot vary is left out
         upper = np.where(wide, upper, lower + AT_BOUND)
     start = np.clip(np.zeros(search.unknowns.count), lower, upper)
+    size, taken = _residual_size(search, start), 0
+    tight = max(settings.tolerance * 1e-3, ROUNDING)
+    for ftol, most in ((settings.tolerance, SLOW), (settings.tolerance, SLOW), (tight, settings.max_iterations)):
+        most = min(most, settings.max_iterations - taken)
+        used, status = _trust_region(search, start, (lower, upper), size, most, ftol)
+        taken += used
+        if status == 0 and taken >= settings.max_iterations:
+            return taken, DesignStatus.MAX_ITERATIONS, ""
+        if search.best[1] <= MET * search.first_value:
+            break
+        polish(search)  # where goals conflict, steps by first derivatives alone lead on slowly
+        start = np.clip(search.best[2], lower, upper)
+    return taken, DesignStatus.CONVERGED, ""
+
+
+def _trust_region(
+    search: Search, start: Floats, bounds: tuple[Floats, Floats], size: float, most: int, ftol: float
+) -> tuple[int, int]:
+    """One run of SciPy's method: the evaluations that it took, and its status, 0 where these are the `most`."""
+    from scipy.optimize import least_squares
+
+    settings, (lower, upper) = search.problem.settings, bounds
     off = off_zero(start, lower, upper)
-    size = _residual_size(search, start)
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", "Setting `gtol`")
         found = least_squares(
             lambda z: search.residuals(z - off) / size, start + off, lambda z: search.slopes(z - off) / size,
             bounds=(lower + off, upper + off), method="trf",
-            ftol=settings.tolerance, xtol=settings.tolerance, gtol=FLAT,
-            max_nfev=settings.max_iterations,
+            ftol=ftol, xtol=settings.tolerance, gtol=FLAT,
+            max_nfev=max(most, 1),
         )  # fmt: skip
-    ended = DesignStatus.MAX_ITERATIONS if found.status == 0 else DesignStatus.CONVERGED
-    return int(found.njev), ended, ""
+    return int(found.njev if found.status else found.nfev), int(found.status)
 
 
 def _residual_size(search: Search, start: Floats) -> float:
@@ -167,6 +188,9 @@ def _slsqp(search: Search) -> Ended:
         if iterations >= settings.max_iterations:
             return iterations, DesignStatus.MAX_ITERATIONS, ""
         if found.nit > WANDERS and not at_minimum(search):
+            polish(search)
+            if at_minimum(search):
+                return iterations, DesignStatus.CONVERGED, ""
             return _augmented(search, iterations)
         if search.best[0] > 0.0:
             iterations += nearer(search)

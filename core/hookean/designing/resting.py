@@ -1,4 +1,6 @@
-"""What rests on floors: its motions along them, and where it only just touches or is about to slide."""
+"""What rests on floors: its motions along them, and where it only just touches, is about to slide, or is held by
+friction where the way to its rest has led it: there the shape depends on the path, and no equation of equilibrium has
+its derivatives."""
 
 from __future__ import annotations
 
@@ -7,6 +9,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean.forces.base import lengths
 from hookean.system.state import State
 from hookean.system.system import System
 
@@ -14,7 +17,12 @@ Floats = NDArray[np.float64]
 
 NEAR = 1e-7  # part of the model's size within which a particle touches a floor
 FAINT = 1e-6  # part of the largest force: a floor that carries less only just touches
+STAYED = 1e-9  # part of the model's size: what moved less has been held from the start
 POINT, NORMAL, STICKS = slice(0, 3), slice(3, 6), 7  # columns of a floor's parameters
+
+TOUCHES = "only just touches; derivatives hold on one side"
+SLIDES = "is at the limit of friction; derivatives are those of sliding"
+STUCK = "is held by friction at a place that depends on its path; derivatives hold it there, and leave out the path"
 
 
 @dataclass
@@ -35,6 +43,7 @@ def resting(system: System, state: State) -> Resting:
     scale, left = float(np.abs(forces).max(initial=0.0)), forces * state.free
     carried = system.support(state, left)
     planes = np.concatenate([group.block.parameters for group in system.contacts])
+    touching, sliding, stuck_at = [], [], []
     normals = planes[:, NORMAL]
     heights = state.x[: system.slots.count] @ normals.T - (planes[:, POINT] * normals).sum(axis=1)
     for i in np.flatnonzero((heights <= NEAR * system.size).any(axis=1)):
@@ -43,15 +52,25 @@ def resting(system: System, state: State) -> Resting:
             at & (normals @ carried[i] > FAINT * scale) & (np.abs(normals[:, free]).max(axis=1, initial=0.0) > 0.0)
         )
         if (at & ~presses).any() and free.any():
-            found.said.append(f"floor: particle {i} only just touches; derivatives hold on one side")
+            touching.append(i)
         if not presses.any():
             continue
         rough = bool((planes[presses, STICKS] > 0.0).any())
         stuck = rough and not left[i].any()
         if rough and not stuck:
-            found.said.append(f"floor: particle {i} is at the limit of friction; derivatives are those of sliding")
+            sliding.append(i)
+        if stuck:
+            stuck_at.append(i)
         found.motions[int(i)] = np.zeros((0, 3)) if stuck else _along(normals[presses], free)
+    moved = lengths(state.x[stuck_at] - system.start().x[stuck_at]) if stuck_at else np.zeros(0)
+    stopped = np.asarray(stuck_at)[moved > STAYED * system.size].tolist() if stuck_at else []
+    found.said = [_sentence(*each) for each in ((touching, TOUCHES), (sliding, SLIDES), (stopped, STUCK)) if each[0]]
     return found
+
+
+def _sentence(particles: list[int], what: str) -> str:
+    more = f" (and {len(particles) - 1} more)" if len(particles) > 1 else ""
+    return f"floor: particle {particles[0]}{more} {what}"
 
 
 def _along(normals: Floats, free: NDArray[np.bool_]) -> Floats:

@@ -21,6 +21,7 @@ from hookean.designing.gains import at_minimum
 from hookean.designing.limits import LIMIT, beyond, size
 from hookean.designing.linearised import Linearised
 from hookean.designing.methods import METHODS, Stopped, Unbounded
+from hookean.designing.polish import polish
 from hookean.designing.problem import Problem
 from hookean.designing.quantities.base import Quantity
 from hookean.designing.second_look import SYMMETRIC, UNMOVED, stationary, unmoved
@@ -77,6 +78,7 @@ class Search:
             size(values, *limits, self.sized(constraint.quantity))
             for constraint, values, limits in zip(problem.constraints, first, self.aims.limits, strict=True)
         ]
+        self.first_value = abs(self._objective(self.first))
         self.note(np.zeros(self.unknowns.count))
 
     @property
@@ -160,12 +162,20 @@ class Search:
     def check_end(self) -> None:
         """Raise Unbounded where the best so far is no minimum and a variable has left all sizes."""
         missed, _, y = self.best
-        if missed == 0.0 and np.abs(y).max() > FAR and not at_minimum(self):
+        if missed == 0.0 and np.abs(y).max() > FAR and not at_minimum(self) and self._falls(y):
             raise Unbounded(self._endless(y))
         if missed == 0.0 and np.abs(self.at_best().x).max() > FAR * self.system.size:
             slope = self.gradient(y)
             name, way = self._called(int(np.argmax(np.abs(slope)))), "falls" if slope.min() > 0.0 else "varies"
             raise Unbounded(f"the shape grows beyond {FAR:g} times its size as {name} {way}; give that bounds")
+
+    def _falls(self, y: Floats) -> bool:
+        """Whether the objective is less twice as far out, too, or nothing is at rest there."""
+        kept = self.best[1]
+        found = self.at(np.clip(2.0 * y, *self.bounds))
+        falls = not found.converged or (self._objective(found) < kept and self.missed(found) == 0.0)
+        self.at_best()
+        return falls
 
     def _called(self, number: int) -> str:
         """The variable of an unknown."""
@@ -202,7 +212,13 @@ class Search:
         value = self._objective(found)
         slack = SLACK * max(abs(value), abs(self.best[1]))
         if found.converged and self.missed(found) == 0.0 and value - self.best[1] <= slack:
-            self.best, self._best_x = (0.0, value, y.copy()), self.state.x.copy()
+            self.take(y)
+
+    def take(self, y: Floats) -> None:
+        """Take a shape for the best, which it is to its last digits, unless it misses a limit."""
+        found = self.at(y)
+        if found.converged and self.missed(found) == 0.0:
+            self.best, self._best_x = (0.0, self._objective(found), y.copy()), self.state.x.copy()
 
     def note(self, y: Floats) -> None:
         """Remember the best shape: the one that misses its constraints least, then the one of the least objective."""
@@ -246,6 +262,10 @@ def design(
             iterations, ended, said = METHODS[method](search)
             if method in ("l-bfgs-b", "slsqp", "augmented_lagrangian"):
                 search.check_end()
+            if ended in (DesignStatus.CONVERGED, DesignStatus.STALLED):
+                polish(search)
+            if ended is DesignStatus.STALLED and at_minimum(search):
+                ended, said = DesignStatus.CONVERGED, ""
             if ended is DesignStatus.CONVERGED and stationary(search):
                 ended, said = DesignStatus.STALLED, SYMMETRIC
             if ended is DesignStatus.INFEASIBLE and unmoved(search):
@@ -254,6 +274,8 @@ def design(
             ended, said = DesignStatus.CANCELLED, "Stopped by the caller."
         except Unbounded as error:
             ended, said = DesignStatus.UNBOUNDED, f"The objective falls without end: {error}."
+            if search.best[0] > 0.0:  # what grows are penalties
+                ended, said = DesignStatus.INFEASIBLE, ""
     return answer(search, search.used or method, iterations or search.evaluations, ended, said)
 
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from hookean.designing.equilibrium import Equilibrium, settle
 from hookean.designing.kinks import kinks
 from hookean.designing.problem import Problem
-from hookean.designing.quantities.base import Quantity
+from hookean.designing.quantities.base import Quantity, measured
 from hookean.designing.unknowns import Unknowns
 from hookean.errors import InputError
 from hookean.running.result import Result
@@ -69,7 +69,7 @@ def sensitivity(problem: Any, goals: Any = None, variables: Any = None) -> Sensi
     if unknowns.differ:
         unknowns.put(system, state, unknowns.start)
     found = settle(system, state, once=True)
-    values = [g.quantity.values(found, f"/goals/{i}") for i, g in enumerate(problem.goals)]
+    values = [measured(g.quantity, found, f"/goals/{i}") for i, g in enumerate(problem.goals)]
     total = sum(g.weight * each.sum() for g, each in zip(problem.goals, values, strict=True))
     weights = [np.full(len(each), g.weight) for g, each in zip(problem.goals, values, strict=True)]
     quantities = [(g.quantity, f"/goals/{i}") for i, g in enumerate(problem.goals)]
@@ -77,7 +77,7 @@ def sensitivity(problem: Any, goals: Any = None, variables: Any = None) -> Sensi
     if not np.isfinite(gradient).all():
         raise InputError("/scene", f"the tangent at the equilibrium is singular; {found.result.message}")
     parts = [gradient[s].reshape(v.shape) for v, s in zip(unknowns.variables, unknowns.slices, strict=True)]
-    said = warnings(found)
+    said = warnings(found) + unknowns.differing
     if unknowns.clipped:
         said.append(f"{unknowns.clipped} values of the scene are beyond the bounds; the shape has them at the bounds")
     return Sensitivity(float(total), parts, values, [v.title for v in problem.variables], said, found.result)

@@ -11,7 +11,7 @@ from hookean.designing.answer import Design, DesignStatus
 from hookean.designing.gains import Gains, gains
 from hookean.designing.limits import AT_BOUND, LIMIT, beyond
 from hookean.designing.second_look import UNMOVED, not_found_again
-from hookean.designing.sensitivity import warnings
+from hookean.designing.sensitivity import gradients, warnings
 
 if TYPE_CHECKING:
     from hookean.designing.equilibrium import Equilibrium
@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 Entries = list[dict[str, Any]]
+
+FLAT = 1e-12  # part of what a goal misses: variables that change it by less for each of their sizes do not change it
+SEED = 5  # of the sum of a goal's values with which that is checked
 
 
 def answer(search: Search, method: str, iterations: int, ended: DesignStatus, said: str) -> Design:
@@ -51,8 +54,22 @@ def answer(search: Search, method: str, iterations: int, ended: DesignStatus, sa
         constraints=_constraints(search, found, gained),
         result=found.result,
         scene=scene,
-        warnings=warnings(found) + again,
+        warnings=warnings(found) + search.unknowns.differing + _out_of_reach(search, found, goals) + again,
     )
+
+
+def _out_of_reach(search: Search, found: Equilibrium, goals: Entries) -> list[str]:
+    """A sentence for each goal that is not met, and whose values no variable changes: by a random sum of those."""
+    said, rng = [], np.random.default_rng(SEED)
+    values = search.aims.values(found)
+    for i, (entry, own, missed) in enumerate(zip(goals, values, search.aims.missed(values), strict=True)):
+        if entry["met"] is not False or missed is None or not found.converged:
+            continue
+        weights = np.where(missed != 0.0, rng.uniform(0.5, 1.5, len(own)), 0.0)
+        slopes = gradients(found, search.unknowns, [(search.problem.goals[i].quantity, f"/goals/{i}")], [weights])
+        if np.abs(slopes * search.scale).max(initial=0.0) <= FLAT * float(np.abs(missed).max()):
+            said.append(f"no variable changes goal {entry['name']} at this shape")
+    return said
 
 
 def _sentence(ended: DesignStatus, broken: list[str], iterations: int, value: float) -> str:

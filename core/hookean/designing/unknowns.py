@@ -23,6 +23,8 @@ from hookean.system.system import Held, System, hold
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+ALIKE = 1e-12  # part of the largest value by which equal ones differ
+
 
 class Moved:
     """A variable that is where an anchor holds its particles."""
@@ -84,6 +86,8 @@ class Unknowns:
         if not self.count:
             raise InputError("/variables", "nothing varies: the forces have no elements")
         self.start = np.concatenate([v.entries.start for v in self.variables])
+        self.differing = self._differing()
+        """Sentences on values of the scene that are no longer the same where variables tie or drive them."""
         self.lower, self.upper = self._bounds()
         outside = (self.start < self.lower) | (self.start > self.upper)
         self.start = np.clip(self.start, self.lower, self.upper)
@@ -105,6 +109,24 @@ class Unknowns:
                     raise InputError(pointer, said)
                 found.append((column, part))
         return found
+
+    def _differing(self) -> list[str]:
+        said = []
+        for i, (variable, part) in enumerate(self.parts):
+            if isinstance(variable, DrawnColumn | DrawnAnchor):
+                continue
+            entries, start = variable.entries, getattr(variable, "factor", 1.0) * self.start[part]
+            off = np.abs(entries.with_values(start) - entries.values)
+            if not off.max(initial=0.0) > ALIKE * np.abs(entries.values).max(initial=0.0):
+                continue
+            own = entries.values[off > 0.0]
+            if i < len(self.variables):
+                title, put = variable.variable.title, "each tie gets the mean of its values"
+            else:
+                driven = variable.variable
+                title, put = f"{driven.force}.{driven.field}", "it follows its variable"
+            said.append(f"{title}: values from {own.min():g} to {own.max():g} in the scene are not kept; {put}")
+        return said
 
     def _bounds(self) -> tuple[Floats, Floats]:
         lower, upper = np.full(self.count, -np.inf), np.full(self.count, np.inf)

@@ -23,6 +23,7 @@ Slopes = tuple[Any, Any]
 """Derivatives by positions (k, 3n) and by unknowns (k, u), sparse."""
 
 Axes = Literal["x", "y", "z", "xy", "xz", "yz", "xyz"]
+NOTHING = "{kind} measures nothing, because no particles or elements are selected; give at least one"
 AXES = {"x": 0, "y": 1, "z": 2}
 
 
@@ -55,6 +56,14 @@ class Quantity(Model):
     def slopes(self, found: Equilibrium, unknowns: Unknowns, pointer: str) -> Slopes:
         """Their derivatives, before the mean is taken from them where they are `centred`."""
         raise TypeError(f"{type(self).__name__} does not define slopes()")
+
+
+def measured(quantity: Quantity, found: Equilibrium, pointer: str) -> Floats:
+    """The values (k,) of a quantity; InputError where there are none."""
+    values = quantity.values(found, pointer)
+    if not len(values):
+        raise InputError(pointer, NOTHING.format(kind=quantity.kind_name))
+    return values
 
 
 def particle_places(found: Equilibrium, particles: Ints, pointer: str) -> Ints:

@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import StrictInt, StrictStr, model_validator
 
 from hookean.designing.quantities.base import (
+    NOTHING,
     Floats,
     Ints,
     Quantity,
@@ -91,9 +92,11 @@ class OfElements(Quantity):
         return (diags((count > 0).astype(float)) @ identity(k) - diags(1.0 / np.maximum(count, 1)) @ near).tocsr()
 
     def _rows(self, whole: Floats, pointer: str) -> Ints:
+        if not len(whole) or (self.elements is not None and not len(self.elements)):
+            raise InputError(pointer, NOTHING.format(kind=self.kind_name))
         if self.elements is None:
             return np.arange(len(whole))
-        if len(self.elements) and self.elements.max() >= len(whole):
+        if self.elements.max() >= len(whole):
             said = f"element {int(self.elements.max())} does not exist; there are {len(whole)}, counted from 0"
             raise InputError(f"{pointer}/elements", said)
         return np.asarray(self.elements)

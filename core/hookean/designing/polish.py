@@ -1,0 +1,168 @@
+"""The last digits of a minimum: steps of Newton on what bounds and constraints leave free.
+
+With multipliers l of the constraints c that hold, the Lagrangian f - l . c has derivatives by one solve, and second
+derivatives H by their differences, two equilibria for each unknown. A step goes back to the limits by the shortest way
+and, across their slopes, to where H has the slope vanish, or less far where that gains nothing (Levenberg 1944).
+Source: Nocedal and Wright, Numerical Optimization, 2006, chapter 18.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hookean.designing.gains import Gains, constraint_slopes, gains
+from hookean.designing.sensitivity import gradients
+
+if TYPE_CHECKING:
+    from hookean.designing.equilibrium import Equilibrium
+    from hookean.designing.search import Search
+
+Floats = NDArray[np.float64]
+Bools = NDArray[np.bool_]
+
+MOST = 60  # unknowns that are not at bounds, above which second derivatives take too many equilibria
+STEPS, EQUILIBRIA = 12, 240  # the most of both; 3 steps in any case
+SLOPE = 1e-7  # part of the objective: slopes below are those of a minimum to all digits that count
+OFF = 1e-9  # part of the size of values: nearer to their limit they are at it
+NOTHING = 1e-14  # part of the first objective: what is left is rounding
+STEP = 1e-4  # of an unknown's size, of differences of second order: 1e-8, and rounding of slopes by 1e-5
+STRAIGHT = 1e-12  # part of the largest curvature: that of directions that have less
+DAMPINGS = (0.0, 1e-9, 1e-7, 1e-5, 1e-3, 0.1)  # parts of the largest curvature, added to all
+GAIN = 1e-12  # part of the objective: a step that gains less is the last
+
+
+@dataclass
+class Here:
+    """What a step begins with."""
+
+    y: Floats
+    found: Equilibrium
+    gained: Gains
+    slope: Floats  # of the Lagrangian (u,)
+    free: Bools  # unknowns that no bound holds
+    rows: NDArray[np.int64]  # limits that hold, among all values of constraints
+    off: Floats  # what these are off their limits
+
+
+def polish(search: Search) -> None:
+    """Bring the best so far nearer to the minimum that it is at, if its slope is not that of one yet."""
+    taken = 0
+    for number in range(STEPS):
+        here = _here(search)
+        taken += 0 if here is None else 2 * int(here.free.sum())
+        if here is None or (number >= 3 and taken > EQUILIBRIA) or not _step(search, here):
+            return
+
+
+def _here(search: Search) -> Here | None:
+    missed, value, y = search.best
+    if missed > 0.0 or not abs(value) > NOTHING * search.first_value:
+        return None
+    found = search.at_best()
+    gained = gains(search, found, y) if found.converged else None
+    if gained is None:
+        return None
+    free, slope = ~gained.held, gained.left.sum(axis=0)
+    rows = np.flatnonzero(gained.shares)
+    values, low, high = _limits(search, found)
+    nearer = np.where(np.abs(values - low) < np.abs(values - high), low, high)
+    off = (values - nearer)[rows]
+    flat = not np.abs(slope).max(initial=0.0) > SLOPE * abs(value)
+    if free.sum() > MOST or (flat and not (np.abs(off) > OFF * _sizes(search)[rows]).any()):
+        return None
+    return Here(y, found, gained, slope, free, rows, off)
+
+
+def _sizes(search: Search) -> Floats:
+    parts = zip(search.aims.limits, search.sizes, strict=True)
+    return np.concatenate([np.zeros(0), *(np.full(len(limit[0]), size) for limit, size in parts)])
+
+
+def _limits(search: Search, found: Equilibrium) -> tuple[Floats, Floats, Floats]:
+    none = [np.zeros(0)]
+    values = np.concatenate(none + search.aims.constraint_values(found))
+    low, high = (np.concatenate(none + [limit[side] for limit in search.aims.limits]) for side in (0, 1))
+    return values, low, high
+
+
+def _step(search: Search, here: Here) -> bool:
+    """One step; whether another one may gain more."""
+    steps = _newton(search, here)
+    before, value = _merit(search, here, here.y), abs(search.best[1])
+    for step in steps:
+        y = np.clip(here.y + step, *search.bounds)
+        merit = _merit(search, here, y)
+        if merit < before:
+            search.take(y)
+            return before - merit > GAIN * value
+    return False
+
+
+def _merit(search: Search, here: Here, y: Floats) -> float:
+    """The objective and what limits are missed by, each by more than its multiplier."""
+    found = search.at(y)
+    if not found.converged:
+        return np.inf
+    values, low, high = _limits(search, found)
+    price = 2.0 * np.maximum(np.abs(here.gained.shares), np.abs(here.gained.shares).max(initial=0.0) * 1e-3)
+    return float(sum(search.aims.objectives(found)) + price @ np.abs(values - np.clip(values, low, high)))
+
+
+def _newton(search: Search, here: Here) -> list[Floats]:
+    """Steps (u,), each more damped than the one before; none where there is no second derivative."""
+    free, count = here.free, int(here.free.sum())
+    by = constraint_slopes(search, here.found)[here.rows][:, free] if len(here.rows) else np.zeros((0, count))
+    hessian = _hessian(search, here)
+    if hessian is None:
+        return []
+    back = np.linalg.lstsq(by, -here.off, rcond=1e-10)[0] if len(by) else np.zeros(count)
+    across = _null(by)
+    slope = across.T @ (here.slope[free] + hessian @ back)
+    curvature, turned = np.linalg.eigh(across.T @ hessian @ across)
+    largest, steps = float(np.abs(curvature).max(initial=0.0)), []
+    for damping in DAMPINGS:
+        bent = np.maximum(np.abs(curvature), STRAIGHT * largest) + damping * largest
+        step = np.zeros(len(free))
+        step[free] = back - across @ (turned @ ((turned.T @ slope) / np.where(bent > 0.0, bent, np.inf)))
+        if np.isfinite(step).all():
+            steps.append(step)
+    return steps
+
+
+def _null(by: Floats) -> Floats:
+    """Directions (n, m) in which none of the rows (k, n) changes."""
+    if not len(by):
+        return np.eye(by.shape[1])
+    _, sizes, turned = np.linalg.svd(by)
+    return np.asarray(turned[int((sizes > 1e-10 * sizes.max(initial=0.0)).sum()) :].T)
+
+
+def _hessian(search: Search, here: Here) -> Floats | None:
+    """Second derivatives (n, n) of the Lagrangian by free unknowns."""
+    (lower, upper), columns = search.bounds, []
+    for unknown in np.flatnonzero(here.free):
+        ends, slopes = [], []
+        for way in (STEP, -STEP):
+            away = here.y.copy()
+            away[unknown] = np.clip(away[unknown] + way, lower[unknown], upper[unknown])
+            found = search.at(away)
+            if not found.converged:
+                return None
+            ends.append(away[unknown])
+            slopes.append(_lagrangian(search, here, found))
+        columns.append((slopes[0] - slopes[1]) / (ends[0] - ends[1]))
+    whole = np.array(columns)[:, here.free]
+    return np.asarray(0.5 * (whole + whole.T))
+
+
+def _lagrangian(search: Search, here: Here, found: Equilibrium) -> Floats:
+    """Its slope (u,), by one solve."""
+    goals = [(g.quantity, f"/goals/{i}") for i, g in enumerate(search.problem.goals)]
+    limited = [(c.quantity, f"/constraints/{i}") for i, c in enumerate(search.problem.constraints)]
+    ends = np.cumsum([len(limit[0]) for limit in search.aims.limits])[:-1].astype(int)
+    shares = np.split(-here.gained.shares, ends) if limited else []
+    return gradients(found, search.unknowns, goals + limited, search.aims.slopes(found) + shares) * search.scale
