@@ -19,7 +19,6 @@ from hookean.linear.directions import Directions, begin, sharp
 from hookean.linear.film_tangent import patterned
 from hookean.linear.pattern import Pattern
 from hookean.linear.sparse_factors import Factor
-from hookean.linear.sparse_factors import Factor
 from hookean.linear.unsymmetric import skew_part
 from hookean.solvers.base import Solver
 
