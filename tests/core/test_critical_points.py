@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from soak import seeds
 
 import hookean
 from hookean import Scene
 from hookean.analysis import load_path as paths
 from hookean.analysis.arc_length import Follower
+from soak import seeds
 
 Floats = np.ndarray
 
