@@ -21,7 +21,8 @@ from hookean.errors import InputError
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
-Row, Spot = list[float], tuple[float, float]
+Row = list[float]
+Spot = tuple[float, float]
 
 STEPS = 20  # local and global
 ROUNDS = 50  # of Newton's method
