@@ -2,6 +2,9 @@
 beside this file: `python page.py [FOLDER [PROCESSES]]`; several processes pay from some thousand particles on."""
 
 import sys
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import nullcontext
+from multiprocessing import get_context
 from pathlib import Path
 
 import hookean
@@ -19,22 +22,30 @@ SIDE, WIDTH, ALLOWANCE = 10.0, 1.2, 0.04  # m, of the roof, of a strip of cloth,
 
 def design(scene: Scene, folder: Path, processes: int = 1) -> hookean.LoadCases:
     """Take a roof from its form to what the workshop needs; the files are written to `folder`."""
-    cases = hookean.load_cases(scene, list(scene.combinations), processes=processes)
-    limits = read_limits((HERE / "limits.toml").read_text(encoding="utf-8"))
-    page = report(scene, title="Hypar roof", limits=limits, cases=cases)
-    compensation = strains(PRESTRESS, STIFFNESS, POISSON)
-    rows = round(len(cases.form.particles) ** 0.5 * WIDTH / SIDE)  # of the mesh, to a strip
-    strips = hookean.cutting_patterns(
-        cases.form, compensation=compensation, allowance=ALLOWANCE, rows=rows, mark_every=rows
-    )
-    ropes = hookean.cables(cases.frozen)
+    with ProcessPoolExecutor(processes, get_context("spawn")) if processes > 1 else nullcontext() as pool:
+        if pool is not None:
+            pool.submit(strains, PRESTRESS, STIFFNESS)  # the processes start, and import, while the form is found
+        cases = hookean.load_cases(scene, list(scene.combinations), executor=pool)
+        strips = pool.submit(cut, cases.form, folder) if pool is not None else None
+        limits = read_limits((HERE / "limits.toml").read_text(encoding="utf-8"))
+        page = report(scene, title="Hypar roof", limits=limits, cases=cases)
+        said = cut(cases.form, folder) if strips is None else strips.result()
     (folder / "report.html").write_text(page, encoding="utf-8")
-    write_sheets(strips, folder / "strips.dxf")
-    (folder / "strips.csv").write_text(csv_text(strips.table()), encoding="utf-8")
+    ropes = hookean.cables(cases.frozen)
     (folder / "cables.csv").write_text(csv_text(ropes.table()), encoding="utf-8")
     print(cases.envelope)
-    print("\n".join(strips.summary()))
+    print("\n".join(said))
     return cases
+
+
+def cut(form: hookean.Result, folder: Path) -> list[str]:
+    """Cut the form into strips and write them; returns a few lines about them."""
+    compensation = strains(PRESTRESS, STIFFNESS, POISSON)
+    rows = round(len(form.particles) ** 0.5 * WIDTH / SIDE)  # of the mesh, to a strip
+    strips = hookean.cutting_patterns(form, compensation=compensation, allowance=ALLOWANCE, rows=rows, mark_every=rows)
+    write_sheets(strips, folder / "strips.dxf")
+    (folder / "strips.csv").write_text(csv_text(strips.table()), encoding="utf-8")
+    return strips.summary()
 
 
 if __name__ == "__main__":

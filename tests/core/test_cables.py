@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq
+from scipy.optimize import brentq, fsolve
 
 from hookean import Scene, relax
 
@@ -61,6 +61,43 @@ def test_elastic_catenary_is_approached_with_order_two():
     # Richardson: without the h^2 term, h^4 is left, about the square of the error at 40 segments
     better = np.array(found[2]) + (np.array(found[2]) - found[1]) / 3.0
     assert better == pytest.approx(exact, rel=10 * errors[-1].max() ** 2)
+
+
+def test_an_elastic_catenary_with_a_point_load_is_approached_with_order_two():
+    """Irvine, Cable Structures, 1981, section 1.3: with s the unstressed length from the left end, z down, H the thrust
+    and T(s) = V - w s, less P beyond the load, what pulls down across it, x' = H / EA + H / N, z' = T / EA + T / N, N^2
+    = H^2 + T^2. Both integrals are closed forms (asinh and a root). Span 10, L0 11, EA 500, w 2, P 30 at three tenths
+    of L0."""
+    span, length, axial, weight, load, at = 10.0, 11.0, 500.0, 2.0, 30.0, 3.3
+
+    def piece(thrust, up, size):
+        """x and z of a piece without a point load, from the force across its start."""
+        over = up - weight * size
+        ends = np.array([up, over])
+        x = thrust * size / axial + thrust / weight * -np.diff(np.arcsinh(ends / thrust))[0]
+        z = 0.5 * (up**2 - over**2) / (weight * axial) - np.diff(np.hypot(thrust, ends))[0] / weight
+        return np.array([x, z])
+
+    def parts(u):
+        return piece(u[0], u[1], at), piece(u[0], u[1] - weight * at - load, length - at)
+
+    u, _, fine, said = fsolve(lambda u: sum(parts(u)) - [span, 0.0], [30.0, 25.0], full_output=True, xtol=1e-13)
+    assert fine == 1, said
+    exact, found = np.array([*u, *parts(u)[0]]), []
+    for segments in (10, 20, 40):
+        rest, loaded = length / segments, 3 * segments // 10
+        loads = weights(weight * length, segments)
+        loads[loaded, 2] -= load
+        result = relax(chain(sagging(span, length, segments), axial / rest, rest, loads))
+        assert result.converged
+        pull, place = result.reactions["force"][0], result.particles[loaded]
+        found.append([-pull[0], pull[2], place[0], -place[2]])
+    found = np.array(found)
+    errors = np.abs(found / exact - 1.0)
+    assert np.log2(errors[:-1] / errors[1:]) == pytest.approx(np.full((2, 4), 2.0), abs=0.15)
+    better = found[1:] + np.diff(found, axis=0) / 3.0  # Richardson: without the h^2 term, h^4 is left
+    errors = np.abs(better / exact - 1.0)
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(np.full(4, 4.0), abs=0.3)
 
 
 def test_inextensible_catenary_is_the_limit_of_stiff_cables():

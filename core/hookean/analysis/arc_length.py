@@ -23,7 +23,11 @@ CUTS = 30  # times a step is halved
 BALANCED = 1e-11  # out of balance, as a part of the largest force
 SETTLED = 1e-14  # a Newton step that moves nothing any more, as a part of the model's size
 HALVINGS = 40  # of a bracket
-LEVEL = 1e-3  # of the rates about it: that of the load factor at a limit point, as near as halving comes
+PARTS = (0.5, 0.4, 0.65, 0.25, 0.8)  # of a bracket where its next point is tried, the first that is found
+NEAR = 1e-6  # of a step: two points of one path on both sides of a change are nearer than that
+FLAT = 1e-6  # of the rates about it: that of the load factor at a limit point
+RETAKEN = 8  # times a step that leaves its path is taken again, half as long
+LEVEL = 1e-3  # likewise, as near as halving comes
 
 
 @dataclass(frozen=True)
@@ -70,6 +74,20 @@ class Follower:
         self.way = 1.0 if increment > 0.0 else -1.0
         return abs(increment) * float(np.linalg.norm(point.tangent))
 
+    def onward(self, points: list[Point], reach: float) -> tuple[Point | None, list[tuple[str, Point]]]:
+        """The next point, `reach` away or less, and the critical points before it: by shorter steps where one leaves
+        its path. After `RETAKEN` of them the path goes on where the last one came to."""
+        step = self.step(points, reach)
+        for _ in range(RETAKEN):
+            if step is None:
+                break
+            found = self.between(points[-1], step)
+            if found is not None:
+                return step, found
+            self.shortened *= 0.5
+            step = self.step(points, reach)
+        return step, []
+
     def step(self, points: list[Point], reach: float) -> Point | None:
         """The next point, `reach` away or less; None if no step is short enough to find one."""
         for _ in range(CUTS):
@@ -113,20 +131,29 @@ class Follower:
 
         return self._root(before, after, error) or after
 
-    def between(self, before: Point, after: Point) -> list[tuple[str, Point]]:
-        """Critical points between two points of the path."""
+    def between(self, before: Point, after: Point) -> list[tuple[str, Point]] | None:
+        """Critical points between two points of the path; None where the points between do not lead to one, since the
+        step left its path for another one."""
         found: list[tuple[str, Point]] = []
-        ahead = np.copysign(1.0, self._rate_out(before, after))
-        turns = ahead * after.rate() < 0.0
+        out, at_end = self._rate_out(before, after), after.rate()
+        turns, steepest = out * at_end < 0.0, max(abs(out), abs(at_end))
+        crossed, reach = abs(after.negatives - before.negatives), float(np.linalg.norm(after.moved))
         if turns:
-            limit = self._root(before, after, Point.rate, first=self._rate_out(before, after))
-            if limit is not None:
+            limit = self._root(before, after, Point.rate, first=out)
+            if limit is not None and abs(limit.rate()) <= FLAT * steepest:
                 found.append(("limit", limit))
-        crossed = abs(after.negatives - before.negatives)
+            elif crossed != 1:
+                return None
         if crossed and not (found and crossed == 1):
             point = self._crossing(before, after)
-            level = abs(point.rate()) <= LEVEL * max(abs(before.rate()), abs(after.rate()))
+            if point is not None and found and float(np.linalg.norm(point.x - found[0][1].x)) <= NEAR * reach:
+                point = self._crossing(before, after, last=True)  # that was the limit point: the other change
+            if point is None:
+                return None
+            level = abs(point.rate()) <= LEVEL * steepest
             if crossed == 1 and turns:
+                if not level:
+                    return None
                 found.append(("limit", point))  # bracketed, where its root could not be approached
             elif crossed > 1 or not level:  # else the limit point of a step beside this one
                 found.append(("bifurcation", point))
@@ -166,21 +193,24 @@ class Follower:
             high, at_high = middle, found
         return best
 
-    def _crossing(self, before: Point, after: Point) -> Point:
-        """Where the number of negative eigenvalues changes between two points, by halving."""
+    def _crossing(self, before: Point, after: Point, *, last: bool = False) -> Point | None:
+        """Where the number of negative eigenvalues first changes between two points, or comes to its `last`, by
+        halving; None where no points of one path are found on both sides of it."""
         low, high = 0.0, float(np.linalg.norm(after.moved))
-        found = after
+        least, found = before.x, after
         for _ in range(HALVINGS):
-            point = self.at_arc(before, 0.5 * (low + high))
+            parts = ((middle, self.at_arc(before, middle)) for middle in (low + part * (high - low) for part in PARTS))
+            middle, point = next((pair for pair in parts if pair[1] is not None), (0.0, None))
             if point is None:
-                return found
-            if point.negatives == before.negatives:
-                low = 0.5 * (low + high)
+                break
+            if point.negatives != after.negatives if last else point.negatives == before.negatives:
+                low, least = middle, point.x
             else:
-                high, found = 0.5 * (low + high), point
+                high, found = middle, point
             if high - low <= 1e-9 * high:
                 break
-        return found
+        apart = float(np.linalg.norm(found.x - least))
+        return found if max(apart, high - low) <= NEAR * float(np.linalg.norm(after.moved)) else None
 
     def _solve(self, x: Floats, load: float) -> tuple[Floats, Floats, int] | None:
         """At a shape: the movement that what is out of balance makes, the tangent movement for a unit of the factor,

@@ -96,8 +96,9 @@ def load_path(
 
     Crisfield's cylindrical arc length: each step ends where all movements of a step together have a given length, so
     the path passes limit points (snap-through) and turns back (snap-back). Limit points and bifurcations between two
-    points are found to rounding by the rate of the load factor, or bracketed by the number of negative eigenvalues.
-    The path goes straight on at bifurcations.
+    points are found to rounding by the rate of the load factor, or bracketed by the number of negative eigenvalues;
+    where the points between do not lead to one, the step left its path and is taken again, shorter. The path goes
+    straight on at bifurcations.
 
     - `scene`: The structure with its loads.
     - `loads`: Names (or kinds) of the loads that change; default: all. The others act in full from the start.
@@ -124,14 +125,11 @@ def load_path(
     reach = arc_length or follower.reach(points[0], increment)
     message = f"all {steps} steps are done"
     for _ in range(steps):
-        step = follower.step(points, reach)
+        step, found = follower.onward(points, reach)
         if step is None:
             message = "no step is short enough: the path ends, or the structure has no stiffness there"
             break
-        critical += [
-            CriticalPoint(kind, at.factor, len(points) - 1, at.x[:count])
-            for kind, at in follower.between(points[-1], step)
-        ]
+        critical += [CriticalPoint(kind, at.factor, len(points) - 1, at.x[:count]) for kind, at in found]
         points.append(step)
         if largest_factor is not None and _passed(points, largest_factor):
             points[-1] = follower.at_factor(points[-2], points[-1], largest_factor)

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass
+from math import dist, hypot
 from typing import Any
 
 import numpy as np
@@ -20,6 +21,8 @@ from hookean.errors import InputError
 
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
+Row = list[float]
+Spot = tuple[float, float]
 
 STEPS = 20  # local and global
 ROUNDS = 50  # of Newton's method
@@ -161,35 +164,35 @@ def _unfolded(vertices: Array, triangles: Index) -> Array:
         for i in range(3):
             a, b = triangle[i], triangle[(i + 1) % 3]
             sides.setdefault((min(a, b), max(a, b)), []).append(number)
-    points = np.zeros((len(vertices), 2))
-    known = np.zeros(len(vertices), bool)
-    a, b, _ = triangles[0].tolist()
-    points[b, 0] = np.linalg.norm(vertices[b] - vertices[a])
-    known[[a, b]] = True
+    corners, rows = vertices.tolist(), triangles.tolist()  # single numbers are many times quicker in lists
+    a, b, _ = rows[0]
+    points = {a: (0.0, 0.0), b: (dist(corners[a], corners[b]), 0.0)}
     queue, seen = deque([0]), {0}
     while queue:
-        triangle = triangles[queue.popleft()].tolist()
+        triangle = rows[queue.popleft()]
         for i in range(3):
             a, b, c = (triangle[(i + j) % 3] for j in range(3))
-            if known[a] and known[b] and not known[c]:
-                points[c] = _third(vertices, points, a, b, c)
-                known[c] = True
+            if a in points and b in points and c not in points:
+                points[c] = _third(corners[a], corners[b], corners[c], points[a], points[b])
         for i in range(3):
             a, b = triangle[i], triangle[(i + 1) % 3]
             for near in sides[min(a, b), max(a, b)]:
                 if near not in seen:
                     seen.add(near)
                     queue.append(near)
-    return points
+    return np.array([points[i] for i in range(len(corners))])
 
 
-def _third(vertices: Array, points: Array, a: int, b: int, c: int) -> Array:
-    """Where c lies left of a-b in the plane."""
-    along, across = vertices[b] - vertices[a], vertices[c] - vertices[a]
-    size = np.linalg.norm(along)
-    x, y = across @ along / size, np.linalg.norm(np.cross(along, across)) / size
-    way = (points[b] - points[a]) / np.linalg.norm(points[b] - points[a])
-    return np.asarray(points[a] + x * way + y * np.array([-way[1], way[0]]))
+def _third(a: Row, b: Row, c: Row, start: Spot, end: Spot) -> Spot:
+    """Where the corner c of a triangle lies, left of a-b, which lies from `start` to `end` in the plane."""
+    ux, uy, uz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
+    vx, vy, vz = c[0] - a[0], c[1] - a[1], c[2] - a[2]
+    size = hypot(ux, uy, uz)
+    x = (ux * vx + uy * vy + uz * vz) / size
+    y = hypot(uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx) / size
+    far = dist(start, end)
+    along, across = (end[0] - start[0]) / far, (end[1] - start[1]) / far
+    return start[0] + x * along - y * across, start[1] + x * across + y * along
 
 
 def _rigid(points: Array, triangles: Index, local: Array, weights: Array) -> Array:

@@ -34,10 +34,11 @@ class Factor:
 
 class Factors:
     """Factors of symmetric matrices of one pattern: the lower triangle by columns, rows (nnz,) sorted within each of
-    the columns that begin at `starts` (n + 1,)."""
+    the columns that begin at `starts` (n + 1,). `last` are those that `solve` made last."""
 
     def __init__(self, rows: Ints, starts: Ints) -> None:
         self.rows, self.starts = rows, starts
+        self.last: Factor | None = None
         self._order: Any = None
 
     def factor(self, values: Floats) -> Factor | None:
@@ -54,7 +55,7 @@ class Factors:
     def solve(self, values: Floats, b: Floats, skew: Any = None) -> Floats | None:
         """x of A x = b (n, or fewer: see `Factor.solve`), or of (A + S) x = b with `skew` S, sparse; None unless A is
         positive definite."""
-        factor = self.factor(values)
+        self.last = factor = self.factor(values)
         if factor is None or factor.negatives:
             return None
         x = factor.solve(b) if skew is None else unsymmetric.solve(factor.solve, skew, b)

@@ -59,7 +59,7 @@ class Method(Solver):
     def start(self, system: System, state: State) -> None:
         """Look at the system and choose."""
         self.used, self._steps, self.remark, self.work = [], 0, "", 0.0
-        self._chains = self._levels = False
+        self._chains = self._levels = self._near = False
         self._solves = 0 if self._linear.refuse(system) else SOLVES
         self._prepared, self._last = False, None
         if self._solves:
@@ -137,6 +137,8 @@ class Method(Solver):
             return done
         self._steps, self._pause = int(steps), float(pause)
         self._newton.start(system, state)
+        if self._steps >= SHARP_STEPS and self._near:
+            self._newton.sharpen(state)
         return self._finish(system, state, count, goal)
 
     def _relax_from_here(self, system: System, state: State) -> None:
@@ -191,6 +193,7 @@ class Method(Solver):
 
     def sharpen(self, state: State) -> None:
         """Newton steps are due: the shape is near."""
+        self._near = True
         if "next_newton" in state.scratch:
             state.scratch["next_newton"][::2] = state.iteration, SHARP_STEPS
 

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from hookean.linear.directions import Directions, begin, sharp
 from hookean.linear.film_tangent import patterned
 from hookean.linear.pattern import Pattern
+from hookean.linear.sparse_factors import Factor
 from hookean.linear.unsymmetric import skew_part
 from hookean.solvers.base import Solver
 
@@ -28,6 +29,10 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 NO_SHIFT = 1e-9  # part of the stiffness; a smaller shift is tried after none at all
+MANY = 6_000  # unknowns from which on factors take so much longer than a step that one may serve for several
+NEAR = 1e-5  # of the model's size: after a step that moves less, the tangent is nearly what it was
+MANY = 6_000  # unknowns from which on factors take so much longer than a step that they serve for several
+NEAR = 1e-3  # of the model's size: after a step that moves less, the tangent is nearly what it was
 ROUNDING = 1e-14  # part of the energies that their sum may be off by, and of the model's size
 
 
@@ -63,14 +68,20 @@ class Method(Solver):
             return 0
         if len(system.slots):
             system.slots.fold(state)
-        now, done, helped = Judged.of(system, state), 0, False
+        now, done, helped, kept = Judged.of(system, state), 0, False, None
         while done < count and now.largest > goal:
-            self.pattern = patterned(system, state, free, self.pattern)
+            again, kept = kept, None
+            if again is None:
+                self.pattern = patterned(system, state, free, self.pattern)
             turns = Directions(system, state, state.scratch["directions"]) if "directions" in state.scratch else None
-            step, shift = _step(self.pattern, system, state, now.left, shift, turns)
+            step, shift = _step(self.pattern, system, state, now.left, shift, turns, again)
             if step is None:
                 break
             length, after = _search(system, state, step, now, strict=turns is not None)
+            if again is not None and length == 0.0:
+                continue  # the tangent has changed, after all
+            if length == 1.0 and shift == 0.0 and turns is None and np.abs(step).max() <= NEAR * system.size:
+                kept = self._serves(system)
             if turns is not None:
                 state.scratch["directions"] = turns.after(step)
             if length == 0.0:
@@ -93,6 +104,17 @@ class Method(Solver):
         state.scratch["shift"] = np.array([min(shift, 1.0)])
         return done if helped else 0
 
+    def sharpen(self, state: State) -> None:
+        """No shift at first: what was an equilibrium is stable."""
+        if "shift" in state.scratch:
+            state.scratch["shift"] = np.zeros(1)
+
+    def _serves(self, system: System) -> Factor | None:
+        """The factors of the step that was made last, where they are worth keeping for one more."""
+        if self.pattern is None or len(self.pattern.dofs) < MANY or system.films is not None or len(system.slots):
+            return None
+        return self.pattern.factors.last
+
 
 class Judged:
     """A shape: its energy and what of it may be rounding [force length], what is out of balance (n, 3) [force] and the
@@ -114,10 +136,13 @@ class Judged:
 
 
 def _step(
-    pattern: Pattern, system: System, state: State, left: Floats, shift: float, turns: Directions | None
-) -> tuple[Floats | None, float]:
+    pattern: Pattern, system: System, state: State, left: Floats, shift: float, turns: Directions | None,
+    kept: Factor | None,
+) -> tuple[Floats | None, float]:  # fmt: skip
     """The step of the smallest shift, from this one on, that makes the symmetric part of the tangent positive
-    definite."""
+    definite; by the factors `kept` of a shape beside this one, if there are any."""
+    if kept is not None:
+        return pattern.spread(kept.solve(pattern.gather(left))), shift
     values = pattern.tangent(system, state, turns)
     rhs, unit = pattern.gather(left), state.scratch["unit"][pattern.dofs // 3]
     skew = skew_part(system, pattern.dofs)
