@@ -58,29 +58,44 @@ def service(tmp_path_factory: pytest.TempPathFactory, chromium: str) -> Iterator
 
 
 @pytest.fixture(scope="session")
-def people() -> dict[bool, Any]:
-    """Browsers of somebody who is logged in at the service, with fingers (True) or with a mouse, once there are such.
-    Scripts that were compiled for one page are there for the next."""
+def people(service: Service) -> dict[bool, Person]:
+    """Those who are logged in at the service, with fingers (True) or with a mouse, once there are such."""
     return {}
 
 
-def known(people: dict[bool, Any], browser: Any, service: Service, fingers: bool) -> Any:
-    """An empty page of one of them, without what an earlier one kept."""
-    if fingers not in people:
-        people[fingers] = context(browser, has_touch=fingers)
-        first = Studio(people[fingers].new_page(), service)
+class Person:
+    """A browser of somebody who is logged in, with a page that one test leaves to the next: its process and the
+    scripts it has compiled remain, which is a third of what opening a session takes."""
+
+    def __init__(self, browser: Any, service: Service, fingers: bool) -> None:
+        self.service, self.context = service, context(browser, has_touch=fingers)
+        self.kept: Any = None
+        first = Studio(self.context.new_page(), service)
         first.start()
-        first.page.close()
-    people[fingers].clear_permissions()
-    page = people[fingers].new_page()
-    stored = {"origin": service.url, "storageTypes": "local_storage"}
-    people[fingers].new_cdp_session(page).send("Storage.clearDataForOrigin", stored)
-    return page
+        self.keep(first)
+
+    def page(self) -> Any:
+        """A page without what an earlier test kept in it."""
+        self.context.clear_permissions()
+        page, self.kept = self.kept or self.context.new_page(), None
+        page.goto(f"{self.service.url}/v1/health")  # of the same origin: another one has another process
+        page.evaluate("() => { localStorage.clear(); sessionStorage.clear(); }")
+        return page
+
+    def keep(self, studio: Studio) -> None:
+        """Leave a page to the next test, unless there is one, or it has listeners, routes or scripts of its own."""
+        if self.kept or studio.called:
+            studio.page.close()
+            return
+        studio.unwatch()
+        studio.page.goto(f"{self.service.url}/v1/health")
+        studio.page.mouse.move(0, 0)
+        self.kept = studio.page
 
 
 @pytest.fixture
 def open_studio(
-    browser: Any, service: Service, people: dict[bool, Any], request: pytest.FixtureRequest, tmp_path: Path
+    browser: Any, service: Service, people: dict[bool, Person], request: pytest.FixtureRequest, tmp_path: Path
 ) -> Iterator[Opened]:
     """Opens empty pages: of one who is logged in, with any eyes, or in a browser of its own, of another person."""
     opened: list[Studio] = []
@@ -89,9 +104,12 @@ def open_studio(
     def opening(
         size: dict[str, int] = LAPTOP, theme: str = "light", at: Service | None = None, alone: bool = False
     ) -> Studio:
+        fingers = size is PHONE
         if alone or at:
             own.append(context(browser))
-        page = own[-1].new_page() if alone or at else known(people, browser, service, fingers=size is PHONE)
+        elif fingers not in people:
+            people[fingers] = Person(browser, service, fingers)
+        page = own[-1].new_page() if alone or at else people[fingers].page()
         page.set_viewport_size(size)
         page.emulate_media(color_scheme=theme)
         made = Studio(page, at or service)
@@ -106,7 +124,11 @@ def open_studio(
             picture = tmp_path / f"{request.node.name}-{number}.png"
             studio.page.screenshot(path=picture)
             print(f"what was seen last: {picture}\n" + "\n".join(studio.unexpected()))
-        studio.page.close()
+        [person] = [one for one in people.values() if one.context == studio.page.context] or [None]
+        if person is None or failed or studio.unexpected():
+            studio.page.close()
+        else:
+            person.keep(studio)
     for made in own:
         made.close()
     for session in service.summaries():
