@@ -93,6 +93,33 @@ class Person:
         self.kept = studio.page
 
 
+def person(people: dict[bool, Person], browser: Any, service: Service, fingers: bool) -> Person:
+    """One of those who are logged in."""
+    if fingers not in people:
+        people[fingers] = Person(browser, service, fingers)
+    return people[fingers]
+
+
+@pytest.fixture(scope="module")
+def lasting(
+    launched: tuple[Any, asyncio.AbstractEventLoop], service: Service, people: dict[bool, Person]
+) -> Iterator[Studio]:
+    """An empty page as on a laptop for all tests of a file, each of which takes the fixture `browser` too."""
+    browser, loop = launched
+    asyncio._set_running_loop(loop)
+    someone = person(people, browser, service, fingers=False)
+    studio = Studio(someone.page(), service)
+    studio.page.set_viewport_size(LAPTOP)
+    studio.watch()
+    asyncio._set_running_loop(None)
+    yield studio
+    asyncio._set_running_loop(loop)
+    wrong = studio.unexpected()
+    someone.keep(studio)
+    asyncio._set_running_loop(None)
+    assert not wrong
+
+
 @pytest.fixture
 def open_studio(
     browser: Any, service: Service, people: dict[bool, Person], request: pytest.FixtureRequest, tmp_path: Path
@@ -104,12 +131,11 @@ def open_studio(
     def opening(
         size: dict[str, int] = LAPTOP, theme: str = "light", at: Service | None = None, alone: bool = False
     ) -> Studio:
-        fingers = size is PHONE
         if alone or at:
             own.append(context(browser))
-        elif fingers not in people:
-            people[fingers] = Person(browser, service, fingers)
-        page = own[-1].new_page() if alone or at else people[fingers].page()
+            page = own[-1].new_page()
+        else:
+            page = person(people, browser, service, fingers=size is PHONE).page()
         page.set_viewport_size(size)
         page.emulate_media(color_scheme=theme)
         made = Studio(page, at or service)
@@ -124,11 +150,11 @@ def open_studio(
             picture = tmp_path / f"{request.node.name}-{number}.png"
             studio.page.screenshot(path=picture)
             print(f"what was seen last: {picture}\n" + "\n".join(studio.unexpected()))
-        [person] = [one for one in people.values() if one.context == studio.page.context] or [None]
-        if person is None or failed or studio.unexpected():
+        [owner] = [one for one in people.values() if one.context == studio.page.context] or [None]
+        if owner is None or failed or studio.unexpected():
             studio.page.close()
         else:
-            person.keep(studio)
+            owner.keep(studio)
     for made in own:
         made.close()
     for session in service.summaries():
