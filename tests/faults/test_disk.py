@@ -209,7 +209,7 @@ def _killed_between_faults(other: Disk, monkeypatch: pytest.MonkeyPatch) -> None
     assert told[0] > 0
     with sqlite3.connect(other.path / "sessions.db") as database:
         assert database.execute("PRAGMA integrity_check").fetchone() == ("ok",)
-    second = other.serve(monkeypatch)
+    second = Served(state=str(other.path / "sessions.db"), workers=1)  # without faults
     try:
         assert second.client.get("/v1/sessions/a").json()["revision"] == told[0]
         scene = second.client.get("/v1/sessions/a/scene").json()
