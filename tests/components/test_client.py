@@ -13,6 +13,7 @@ from http.server import BaseHTTPRequestHandler, HTTPServer
 from pathlib import Path
 from typing import Any
 
+import psutil
 import pytest
 
 import hookean_client
@@ -239,26 +240,20 @@ def test_eight_that_race_get_one_server(home: Home, times: int) -> None:
         assert not home.told and home.serving() == []
 
 
-def test_threads_that_race_get_one_server(home: Home) -> None:
+def test_threads_that_race_get_one_server(home: Home, tmp_path: Path) -> None:
+    """What is open here is not kept open there."""
     found: list[str] = []
-    threads = [threading.Thread(target=lambda: found.append(started(home).instance)) for _ in range(8)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
+    with (tmp_path / "model.3dm").open("w") as file:
+        os.set_inheritable(file.fileno(), True)
+        threads = [threading.Thread(target=lambda: found.append(started(home).instance)) for _ in range(8)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        family = [psutil.Process(home.told["pid"]), *psutil.Process(home.told["pid"]).children(recursive=True)]
+        assert not any("model.3dm" in opened.path for process in family for opened in process.open_files())
     assert found == [home.told["instance"]] * 8
     assert home.serving() == [home.told["pid"]]
-
-
-def test_a_start_goes_on_where_nobody_waits_for_it(home: Home, monkeypatch: pytest.MonkeyPatch) -> None:
-    with pytest.raises(Problem) as found:
-        connect(folder=str(home.folder), python=sys.executable, timeout=0.0)
-    assert found.value.slug == "starting"
-    wait_for(lambda: home.told)
-    monkeypatch.setattr(transport, "ANSWER", HANG)  # it has just started, and may be slow
-    client = connect(folder=str(home.folder), start=False)
-    assert client.instance == home.told["instance"]
-    assert not (home.folder / "starting").exists()
 
 
 def test_it_ends_with_the_process_that_asked(home: Home) -> None:
@@ -272,16 +267,6 @@ def test_it_ends_with_the_process_that_asked(home: Home) -> None:
         parent.kill()
     wait_for(lambda: not living(pid))
     assert not home.told and (home.folder / "sessions.db").exists()
-
-
-def test_what_is_open_here_is_not_kept_open_there(home: Home, tmp_path: Path) -> None:
-    import psutil
-
-    with (tmp_path / "model.3dm").open("w") as file:
-        os.set_inheritable(file.fileno(), True)
-        started(home)
-        family = [psutil.Process(home.told["pid"]), *psutil.Process(home.told["pid"]).children(recursive=True)]
-        assert not any("model.3dm" in opened.path for process in family for opened in process.open_files())
 
 
 def test_none_is_started_where_none_is_wanted(home: Home) -> None:
@@ -321,6 +306,7 @@ def test_the_first_serve_tells_the_client_which_python(home: Home) -> None:
 
 
 def test_a_start_that_died_is_begun_again(home: Home, monkeypatch: pytest.MonkeyPatch) -> None:
+    """It goes on where nobody waits for it."""
     home.folder.mkdir(mode=0o700)
     lock = home.folder / "starting"
     lock.write_text("")
@@ -328,7 +314,14 @@ def test_a_start_that_died_is_begun_again(home: Home, monkeypatch: pytest.Monkey
         connect(folder=str(home.folder), python=sys.executable, timeout=0.1)
     assert found.value.slug == "starting" and lock.exists(), "somebody else is at it"
     os.utime(lock, (1, 1))
-    assert started(home).instance == home.told["instance"]
+    with pytest.raises(Problem) as found:
+        connect(folder=str(home.folder), python=sys.executable, timeout=0.0)
+    assert found.value.slug == "starting"
+    wait_for(lambda: home.told)
+    monkeypatch.setattr(transport, "ANSWER", HANG)  # it has just started, and may be slow
+    client = connect(folder=str(home.folder), start=False)
+    assert client.instance == home.told["instance"]
+    assert not lock.exists()
 
 
 # strangers and versions

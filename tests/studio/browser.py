@@ -6,6 +6,7 @@ import re
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -39,6 +40,8 @@ LATEST = """([what, ...told]) => new Promise((done) => {
     look(500);
 })"""
 """What the page tells of what it draws; for a moment after an edit it draws nothing that is of now."""
+ALTERING = ("on", "once", "add_init_script", "route", "route_web_socket", "expose_function", "expose_binding")
+"""Methods of a page whose effect remains when it goes elsewhere."""
 LAPTOP = {"width": 1280, "height": 800}
 PHONE = {"width": 390, "height": 844}
 
@@ -54,12 +57,33 @@ class Studio:
     allowed: list[str] = field(default_factory=list)
     """Patterns of what may happen all the same, as where the service is killed."""
 
+    listeners: list[tuple[Any, Callable[..., None]]] = field(default_factory=list)
+    called: list[str] = field(default_factory=list)
+    """Methods among `ALTERING` that a test has called."""
+
     def watch(self) -> None:
-        """Note from now on what goes wrong."""
-        self.page.on("console", self._said)
-        self.page.on("pageerror", lambda error: self.wrong.append(f"exception: {error}"))
-        self.page.on("requestfailed", self._failed)
-        self.page.on("response", self._answered)
+        """Note from now on what goes wrong, and whether the page gets what outlives its documents."""
+        self.listeners = [
+            ("console", self._said),
+            ("pageerror", lambda error: self.wrong.append(f"exception: {error}")),
+            ("requestfailed", self._failed),
+            ("response", self._answered),
+        ]
+        for event, listener in self.listeners:
+            self.page.on(event, listener)
+        for name in ALTERING:
+            setattr(self.page, name, partial(self._alter, name, getattr(self.page, name)))
+
+    def unwatch(self) -> None:
+        """The page as it was before `watch`."""
+        for name in ALTERING:
+            vars(self.page).pop(name, None)
+        for event, listener in self.listeners:
+            self.page.remove_listener(event, listener)
+
+    def _alter(self, name: str, call: Callable[..., Any], *given: Any, **named: Any) -> Any:
+        self.called.append(name)
+        return call(*given, **named)
 
     def _said(self, message: ConsoleMessage) -> None:
         # how fast the graphics of a machine without a card are is not the page's

@@ -58,29 +58,73 @@ def service(tmp_path_factory: pytest.TempPathFactory, chromium: str) -> Iterator
 
 
 @pytest.fixture(scope="session")
-def people() -> dict[bool, Any]:
-    """Browsers of somebody who is logged in at the service, with fingers (True) or with a mouse, once there are such.
-    Scripts that were compiled for one page are there for the next."""
+def people(service: Service) -> dict[bool, Person]:
+    """Those who are logged in at the service, with fingers (True) or with a mouse, once there are such."""
     return {}
 
 
-def known(people: dict[bool, Any], browser: Any, service: Service, fingers: bool) -> Any:
-    """An empty page of one of them, without what an earlier one kept."""
-    if fingers not in people:
-        people[fingers] = context(browser, has_touch=fingers)
-        first = Studio(people[fingers].new_page(), service)
+class Person:
+    """A browser of somebody who is logged in, with a page that one test leaves to the next: its process and the
+    scripts it has compiled remain, which is a third of what opening a session takes."""
+
+    def __init__(self, browser: Any, service: Service, fingers: bool) -> None:
+        self.service, self.context = service, context(browser, has_touch=fingers)
+        self.kept: Any = None
+        first = Studio(self.context.new_page(), service)
         first.start()
-        first.page.close()
-    people[fingers].clear_permissions()
-    page = people[fingers].new_page()
-    stored = {"origin": service.url, "storageTypes": "local_storage,indexeddb"}
-    people[fingers].new_cdp_session(page).send("Storage.clearDataForOrigin", stored)
-    return page
+        self.keep(first)
+
+    def page(self) -> Any:
+        """A page without what an earlier test kept in it."""
+        self.context.clear_permissions()
+        page, self.kept = self.kept or self.context.new_page(), None
+        page.goto(f"{self.service.url}/v1/health")  # of the same origin: another one has another process
+        page.evaluate("() => sessionStorage.clear()")
+        stored = {"origin": self.service.url, "storageTypes": "local_storage,indexeddb"}
+        self.context.new_cdp_session(page).send("Storage.clearDataForOrigin", stored)
+        return page
+
+    def keep(self, studio: Studio) -> None:
+        """Leave a page to the next test, unless there is one, or it has listeners, routes or scripts of its own."""
+        if self.kept or studio.called:
+            studio.page.close()
+            return
+        studio.unwatch()
+        studio.page.goto(f"{self.service.url}/v1/health")
+        studio.page.mouse.move(0, 0)
+        self.kept = studio.page
+
+
+def person(people: dict[bool, Person], browser: Any, service: Service, fingers: bool) -> Person:
+    """One of those who are logged in."""
+    if fingers not in people:
+        people[fingers] = Person(browser, service, fingers)
+    return people[fingers]
+
+
+@pytest.fixture(scope="module")
+def lasting(
+    launched: tuple[Any, asyncio.AbstractEventLoop], service: Service, people: dict[bool, Person]
+) -> Iterator[Studio]:
+    """An empty page as on a laptop for all tests of a file, each of which takes the fixture `browser` too."""
+    browser, loop = launched
+    asyncio._set_running_loop(loop)
+    someone = person(people, browser, service, fingers=False)
+    studio = Studio(someone.page(), service)
+    studio.page.set_viewport_size(LAPTOP)
+    studio.watch()
+    asyncio._set_running_loop(None)
+    yield studio
+    asyncio._set_running_loop(loop)
+    wrong = studio.unexpected()
+    someone.keep(studio)
+    asyncio._set_running_loop(None)
+    assert not wrong
 
 
 @pytest.fixture
 def open_studio(
-    browser: Any, service: Service, people: dict[bool, Any], request: pytest.FixtureRequest, tmp_path: Path
+    browser: Any, service: Service, people: dict[bool, Person], request: pytest.FixtureRequest, tmp_path: Path
 ) -> Iterator[Opened]:
     """Opens empty pages: of one who is logged in, with any eyes, or in a browser of its own, of another person."""
     opened: list[Studio] = []
@@ -91,7 +135,9 @@ def open_studio(
     ) -> Studio:
         if alone or at:
             own.append(context(browser))
-        page = own[-1].new_page() if alone or at else known(people, browser, service, fingers=size is PHONE)
+            page = own[-1].new_page()
+        else:
+            page = person(people, browser, service, fingers=size is PHONE).page()
         page.set_viewport_size(size)
         page.emulate_media(color_scheme=theme)
         made = Studio(page, at or service)
@@ -106,7 +152,11 @@ def open_studio(
             picture = tmp_path / f"{request.node.name}-{number}.png"
             studio.page.screenshot(path=picture)
             print(f"what was seen last: {picture}\n" + "\n".join(studio.unexpected()))
-        studio.page.close()
+        [owner] = [one for one in people.values() if one.context == studio.page.context] or [None]
+        if owner is None or failed or studio.unexpected():
+            studio.page.close()
+        else:
+            owner.keep(studio)
     for made in own:
         made.close()
     for session in service.summaries():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 from pathlib import Path
+from typing import Any
 from xml.etree import ElementTree
 
 import compas
@@ -24,16 +25,17 @@ FIGURE = "9.24-membrane"
 
 
 @pytest.fixture
-def membrane(tab: Studio) -> Studio:
-    """The membrane at rest, as drawn."""
-    service = tab.service
+def membrane(lasting: Studio, browser: Any) -> Studio:
+    """The membrane at rest, as drawn, in a page for all tests here."""
+    service = lasting.service
     if FIGURE not in [session["key"] for session in service.summaries()]:
         service.put(FIGURE, service.example(FIGURE))
         service.act(FIGURE, "play?fast=true")
         service.at_rest(FIGURE)
-    tab.open(FIGURE)
-    tab.rests_at(service.particles(FIGURE))
-    return tab
+    if not lasting.page.url.endswith(f"#s={FIGURE}"):
+        lasting.open(FIGURE)
+        lasting.rests_at(service.particles(FIGURE))
+    return lasting
 
 
 def taken(studio: Studio, button: str, ending: str) -> Path:

@@ -5,12 +5,10 @@ One page and one session for all tests of this file, in their order.
 
 from __future__ import annotations
 
-import asyncio
 import csv
 import io
 import json
 import re
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +20,6 @@ from hookean.discretize import grid, naked_vertices
 from serving import wait_for
 
 from .browser import LAPTOP, Studio
-from .conftest import known
 from .service import Service
 
 pytestmark = pytest.mark.slow
@@ -42,33 +39,15 @@ def roof() -> dict[str, Any]:
     return scene
 
 
-@pytest.fixture(scope="module")
-def page(
-    launched: tuple[Any, asyncio.AbstractEventLoop], service: Service, people: dict[bool, Any]
-) -> Iterator[Studio]:
-    """The roof at rest, in a page of its own."""
-    browser, loop = launched
-    asyncio._set_running_loop(loop)
-    service.put("reading", roof())
-    service.act("reading", "relax")
-    service.at_rest("reading")
-    studio = Studio(known(people, browser, service, fingers=False), service)
-    studio.page.set_viewport_size(LAPTOP)
-    studio.watch()
-    studio.open("reading")
-    asyncio._set_running_loop(None)
-    yield studio
-    asyncio._set_running_loop(loop)
-    studio.page.close()
-    asyncio._set_running_loop(None)
-    assert not studio.unexpected()
-
-
 @pytest.fixture
-def studio(page: Studio, launched: tuple[Any, asyncio.AbstractEventLoop]) -> Iterator[Studio]:
-    asyncio._set_running_loop(launched[1])
-    yield page
-    asyncio._set_running_loop(None)
+def studio(lasting: Studio, browser: Any, service: Service) -> Studio:
+    """The roof at rest, in a page for all tests here."""
+    if "#s=" not in lasting.page.url:
+        service.put("reading", roof())
+        service.act("reading", "relax")
+        service.at_rest("reading")
+        lasting.open("reading")
+    return lasting
 
 
 def unfold(studio: Studio, panel: str) -> None:
