@@ -31,7 +31,8 @@ export function chosenOf({ options }: Studio, topology: Topology): Chosen {
     const found = mesh.faces.flatMap((face, i) => (all(face) ? [i] : []));
     if (found.length) faces[name] = found;
   }
-  const edges = springs.length ? springs.map((i) => topology.springs[i]!) : naked(topology).filter(all);
+  const own = Object.values(topology.meshes).flatMap((mesh) => mesh.faces);
+  const edges = springs.length ? springs.map((i) => topology.springs[i]!) : naked(own).filter(all);
   return { particles: [...marked], springs, faces, edges: distinct(edges as [number, number][]) };
 }
 

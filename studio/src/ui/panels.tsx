@@ -23,9 +23,9 @@ import { Timeline } from "./timeline";
 import { TagsChoice } from "./tags";
 
 export function Panels({ studio, title }: { studio: Studio; title: string }) {
-  // who begins with an empty page draws, also after the first corner
+  // who begins with an empty page, or with points alone, draws, also after the first corner
   const isBlank = useRef(false);
-  isBlank.current ||= studio.session.topology.value?.particles === 0;
+  isBlank.current ||= studio.session.topology.value?.forces.length === 0;
   return (
     <aside class="panels" aria-label="Panels">
       <Panel name="Picked">
