@@ -9,6 +9,7 @@ import { titleOf } from "./forces";
 import { Groups } from "./groups";
 import { useEdit } from "./loads";
 import { NumberField } from "./number";
+import { Stiffen } from "./stiffen";
 import type { Studio } from "./studio";
 import { counted, titled } from "./words";
 
@@ -69,6 +70,7 @@ export function Selected({ studio }: { studio: Studio }) {
         {counted(chosen.length, "particle")} selected. Forces are added to them by "What is picked" below.
       </p>
       <Acts studio={studio} chosen={chosen} />
+      <Stiffen studio={studio} chosen={chosen} />
       <Groups studio={studio} chosen={chosen} choose={choose} />
     </details>
   );
