@@ -76,7 +76,7 @@ export function Change({ studio, pen }: { studio: Studio; pen: Pen }) {
   const several = (number: number, what: string) => (number === 1 ? `1 ${what}` : counted(number, what));
   return (
     <details class="seldom">
-      <summary>Change what is selected</summary>
+      <summary title="Divide springs and faces, extrude edges, delete">Change what is selected</summary>
       <p class="note" role="status">
         {several(particles.length, "particle")}, {several(springs.length, "spring")} and{" "}
         {several(count, "face")} selected.
@@ -108,7 +108,7 @@ export function Change({ studio, pen }: { studio: Studio; pen: Pen }) {
           `${several(count, "face")} divided`,
         )}
       </div>
-      <div class="components" role="group" aria-label="Extrude by">
+      <div class="components" role="group" aria-label="Extrude by" title="How far the new edges are from the old ones">
         <span class="seen">Extrude by</span>
         {by.value.map((value, axis) => (
           <NumberField

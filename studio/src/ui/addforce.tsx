@@ -45,7 +45,9 @@ export function AddForce({ studio }: { studio: Studio }) {
   };
   return (
     <details class="seldom">
-      <summary>Add a force of any kind</summary>
+      <summary title="Loads, springs, pressure, contact and all others, with their values">
+        Add a force of any kind
+      </summary>
       <form class="addforce" onSubmit={(event) => void add(event)}>
         <label class="field">
           <span>Kind</span>
@@ -73,7 +75,7 @@ export function AddForce({ studio }: { studio: Studio }) {
         </label>
         <p class="note">{kind.summary}</p>
         {open.length > 0 && (
-          <label class="field">
+          <label class="field" title="Where the force acts: all particles, what is picked or selected, springs, a mesh">
             <span>On</span>
             <select
               aria-label="On"
@@ -117,7 +119,11 @@ export function AddForce({ studio }: { studio: Studio }) {
             {fault.value}
           </p>
         )}
-        <button type="submit" disabled={busy || session.connection.value !== "live"}>
+        <button
+          type="submit"
+          disabled={busy || session.connection.value !== "live"}
+          title="Add this force to the model at the place and with the values above; Undo removes it"
+        >
           Add {kind.title.toLowerCase()}
         </button>
       </form>

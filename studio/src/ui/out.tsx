@@ -173,7 +173,11 @@ export function OutPanel({ studio, title }: { studio: Studio; title: string }) {
             {seen}
           </button>
         ))}
-        <button type="button" onClick={() => void copy()}>
+        <button
+          type="button"
+          title="The address of this session, for a browser that is logged in"
+          onClick={() => void copy()}
+        >
           Copy link
         </button>
       </div>
