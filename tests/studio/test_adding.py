@@ -65,8 +65,8 @@ def test_loads_and_self_weight_are_added_to_any_scene(tab: Studio, scene: str):
 
 
 def test_kinds_for_meshes_lines_and_rows_of_particles(tab: Studio):
-    """Pressure acts on the mesh, springs join what is numbered, a surface has rows of points, a group one number, a
-    floor no place; and a wrong number of particles is a sentence."""
+    """Pressure acts on the mesh, springs join what is numbered, a surface has rows of points, a floor
+    no place; and a wrong number of particles is a sentence."""
     tab.service.put("add-kinds", net(4))
     tab.open("add-kinds")
     add(tab, "Pressure", "Mesh net", Pressure="2")
@@ -79,7 +79,7 @@ def test_kinds_for_meshes_lines_and_rows_of_particles(tab: Studio):
     add(tab, "Pull to surface", "Every particle", **plane, **{"Degree u": "1", "Degree v": "1"})
     tab.until(lambda: focused(tab) == "pull to surface")
     assert forces(tab)[-1]["control_points"] == [[[0, 0, 1], [3, 0, 1]], [[0, 3, 1], [3, 3, 1]]]
-    add(tab, "Co planar", "Particles by number", Numbers="0 1 2 5", Group="0")
+    add(tab, "Co planar", "Particles by number", Numbers="0 1 2 5", Group="0 0 0 0")
     tab.until(lambda: focused(tab) == "co planar")
     tab.page.get_by_label("Kind").select_option(label="Floor")
     assert tab.page.get_by_text("which this kind needs").count() == 0  # it needs no place at all
