@@ -57,10 +57,10 @@ def build(drawing: Drawing, recipe: Mapping[str, Any], *, lenient: bool = False)
     return _Builder(drawing, recipe, lenient).built()
 
 
-def _drawn_on(anchors: Sequence[Shape | None]) -> Sequence[Any]:
+def _drawn_on(anchors: Sequence[Shape | None]) -> list[Any]:
     """Coordinates of anchors that no force connects: particles between which lines can be drawn [length]."""
     found = [shape.array.reshape(-1, 3) for shape in anchors if shape is not None]
-    return np.unique(np.concatenate(found), axis=0) if found else ()
+    return np.unique(np.concatenate(found), axis=0).tolist() if found else []
 
 
 class _Builder:
