@@ -111,6 +111,12 @@ def spent(process: psutil.Process) -> float:
     return sum(int((thread / "schedstat").read_text().split()[0]) for thread in threads.iterdir()) / 1e6
 
 
+def parts(stats: dict[str, Any], count: int) -> str:
+    """What the last frames took on the main thread, by what was done with them: medians [ms]."""
+    lists = [stats[f"{name}Milliseconds"][-count:] for name in ("decode", "colour", "upload")]
+    return " + ".join(f"{statistics.median(found):.2f}" if found else "-" for found in lists) + " ms"
+
+
 def frames(watched: Watched, count: int) -> None:
     """What a frame of a net in motion takes on the main thread."""
     watched.press("Play")
@@ -121,13 +127,7 @@ def frames(watched: Watched, count: int) -> None:
     after, heavier = watched.stats(), watched.heap()
     watched.press("Pause")
     drawn = after["framesDrawn"] - before["framesDrawn"]
-    parts = [
-        statistics.median(after[f"{name}Milliseconds"][-count:])
-        for name in ("decode", "colour", "upload")
-        if f"{name}Milliseconds" in after
-    ]
-    told = " + ".join(f"{part:.2f}" for part in parts)
-    show("decode + colour + upload of a frame, median", f"{told} ms", "<= 12 ms together")
+    show("decode + colour + upload of a frame, median", parts(after, count), "<= 12 ms together")
     show(f"heap after {drawn} more frames", f"{(heavier - weight) / 1e6:+.2f} MB", "flat")
 
 
@@ -155,6 +155,7 @@ def drag(watched: Watched, playing: bool, count: int) -> None:
     whole = {name: (after[name] - all_of_it[name]) / (count - 1) for name in after}
     got = watched.read[read:]
     told = watched.sent[sent:]
+    took = parts(watched.stats(), count - 1)
     page.mouse.up()
     page.wait_for_timeout(1500)
     middle = {name: statistics.median(one[name] for one in used[1:]) for name in used[0]}
@@ -163,6 +164,7 @@ def drag(watched: Watched, playing: bool, count: int) -> None:
     show(f"a drag {how}: all processor time by moves", f"{whole['server']:.0f} + {whole['page']:.0f} ms", "<= 150 ms")
     show(f"a drag {how}: processor of the software renderer", f"{middle['renderer']:.0f} ms", "none")
     show(f"a drag {how}: to the frame with it, here", f"{statistics.median(waits):.0f} ms", "none: load counts")
+    show(f"a drag {how}: decode + colour + upload, median", took, "<= 12 ms together")
     show(f"a drag {how}: socket, each move", f"{sum(told) / (count - 1) / 1e3:.0f} kB in {len(told)} messages", "none")
     show(f"a drag {how}: HTTP", f"{len(got)} requests, {sum(size for _, size in got) / 1e6:.2f} MB", "none read")
     if playing:

@@ -378,3 +378,11 @@ def test_only_springs_with_a_rest_length_are_warned_of_for_zero_length():
         spring = {"kind": "springs", "particles": [[0, 1]], "rest_length": rest}
         spec = {"particles": [[0, 0, 0], [0, 0, 0]], "forces": [spring], "anchors": [{"particles": [0]}]}
         assert any("zero length" in said for said in compile(Scene.read(spec)).report.warnings) is warned
+
+
+@pytest.mark.parametrize("strict", [True, False])
+def test_an_anchor_of_a_scene_without_particles_is_refused_in_a_sentence(strict: bool):
+    spec = {"anchors": [{"name": "mast", "points": [[0, 0, 0]]}], "strict": strict}
+    with pytest.raises(InputError, match="mast: the scene has no particles to meet") as found:
+        compile(Scene.read(spec), empty=True)
+    assert found.value.pointer == "/anchors/0/points"

@@ -1,5 +1,5 @@
 """Every Rhino file of the shared data opens by the requests of the page, or a choice of the import sheet leads to a
-model; where none can, a sentence names what to do in Rhino. That every figure opens is in `test_gallery.py`."""
+model; points alone are what one draws lines between. That every figure opens is in `test_gallery.py`."""
 
 from __future__ import annotations
 
@@ -25,10 +25,9 @@ CHOICES: dict[str, tuple[str, dict[str, Any]]] = {
 }
 """Closed surfaces start as left out: the layer, and the values of a net of it. All is held, as its reason says."""
 SENTENCES = {
-    "v7_my_points.3dm": ("no curves or surfaces that connect them", "draw lines or a mesh between the points"),
     "v7_my_trimmed_surface.3dm": ('layer "trimmed surface"', "without a render mesh", "choose whole"),
 }
-"""Files without anything that can be springs, and what the sheet reports of them."""
+"""Files whose first proposal is no model, and what the sheet reports of them."""
 
 
 def works(client: httpx.Client, made: httpx.Response) -> None:
@@ -64,19 +63,33 @@ def test_a_rhino_file_leads_to_a_model(client: httpx.Client, name: str) -> None:
 @pytest.mark.skipif(not FILES, reason="the files of Rhino are not here")
 @pytest.mark.parametrize("name", SENTENCES)
 def test_a_file_without_a_model_gets_a_sentence(client: httpx.Client, name: str) -> None:
-    """What is missing and what to do in Rhino, whichever roles its layers have; trimmed faces give a model without
-    their cuts where that is chosen."""
+    """What is missing and what to do; trimmed faces give a model without their cuts where that is chosen."""
     data = (RHINO / name).read_bytes()
     draft = asked(client, None, data, name).json()
     assert all(words in draft["fault"] for words in SENTENCES[name])
-    if name == "v7_my_trimmed_surface.3dm":
-        [row] = [row for row in draft["rows"] if row["layer"] == "trimmed surface"]
-        chosen = {"layer": row["layer"], "family": row["family"], "role": "net", "values": {"divide_trimmed": "whole"}}
-        whole = asked(client, {"rows": [chosen]}, data, name).json()
-        assert not whole["fault"] and whole["particles"] > 1
-        form = {"file": (name, data), "recipe": (None, json.dumps(whole["recipe"]))}
-        works(client, client.post("/v1/sessions", files=form))
-    if name == "v7_my_points.3dm":
-        assert all({"anchors", "loads"} <= {*row["roles"]} for row in draft["rows"])
-        rows = [{"layer": row["layer"], "family": "points", "role": "loads"} for row in draft["rows"]]
-        assert asked(client, {"rows": rows}, data, name).json()["fault"] == draft["fault"]
+    [row] = [row for row in draft["rows"] if row["layer"] == "trimmed surface"]
+    chosen = {"layer": row["layer"], "family": row["family"], "role": "net", "values": {"divide_trimmed": "whole"}}
+    whole = asked(client, {"rows": [chosen]}, data, name).json()
+    assert not whole["fault"] and whole["particles"] > 1
+    form = {"file": (name, data), "recipe": (None, json.dumps(whole["recipe"]))}
+    works(client, client.post("/v1/sessions", files=form))
+
+
+@pytest.mark.skipif("v7_my_points.3dm" not in FILES, reason="the file of Rhino is not here")
+def test_points_alone_become_held_particles_to_draw_between(client: httpx.Client) -> None:
+    """Five points on three layers; a spring that is drawn between two is part of the session. Where all of them are
+    loads there is nothing to draw between."""
+    name = "v7_my_points.3dm"
+    data = (RHINO / name).read_bytes()
+    draft = asked(client, None, data, name).json()
+    assert (draft["fault"], draft["particles"], draft["held"]) == ("", 5, 5)
+    assert "draw lines between them" in draft["notes"][-1]
+    form = {"file": (name, data), "recipe": (None, json.dumps(draft["recipe"]))}
+    made = client.post("/v1/sessions", files=form)
+    assert made.status_code == 201, made.text
+    spring = {"kind": "springs", "name": "drawn lines", "particles": [[0, 4]]}
+    drawn = client.patch(made.headers["location"], json={"draw": {"add": {"forces": [spring]}}})
+    assert drawn.status_code == 200, drawn.text
+    works(client, made)
+    rows = [{"layer": row["layer"], "family": "points", "role": "loads"} for row in draft["rows"]]
+    assert "give a layer the role anchors" in asked(client, {"rows": rows}, data, name).json()["fault"]

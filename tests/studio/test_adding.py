@@ -65,7 +65,8 @@ def test_loads_and_self_weight_are_added_to_any_scene(tab: Studio, scene: str):
 
 
 def test_kinds_for_meshes_lines_and_rows_of_particles(tab: Studio):
-    """Pressure acts on the mesh, springs join what is numbered, and a wrong number of particles is a sentence."""
+    """Pressure acts on the mesh, springs join what is numbered, a surface has rows of points, a floor
+    no place; and a wrong number of particles is a sentence."""
     tab.service.put("add-kinds", net(4))
     tab.open("add-kinds")
     add(tab, "Pressure", "Mesh net", Pressure="2")
@@ -74,6 +75,18 @@ def test_kinds_for_meshes_lines_and_rows_of_particles(tab: Studio):
     add(tab, "Springs", "Particles by number", Numbers="0 15", Stiffness="7")
     tab.until(lambda: focused(tab) == "springs")
     assert forces(tab)[-1]["stiffness"] == 7.0
+    plane = {"Control points": "0 0 1, 3 0 1; 0 3 1, 3 3 1", "Knots u": "0 0 1 1", "Knots v": "0 0 1 1"}
+    add(tab, "Pull to surface", "Every particle", **plane, **{"Degree u": "1", "Degree v": "1"})
+    tab.until(lambda: focused(tab) == "pull to surface")
+    assert forces(tab)[-1]["control_points"] == [[[0, 0, 1], [3, 0, 1]], [[0, 3, 1], [3, 3, 1]]]
+    add(tab, "Co planar", "Particles by number", Numbers="0 1 2 5", Group="0 0 0 0")
+    tab.until(lambda: focused(tab) == "co planar")
+    tab.page.get_by_label("Kind").select_option(label="Floor")
+    assert tab.page.get_by_text("which this kind needs").count() == 0  # it needs no place at all
+    tab.press("Add floor")
+    tab.until(lambda: focused(tab) == "floor")
+    tab.page.get_by_label("Kind").select_option(label="Pull to mesh")
+    assert tab.page.get_by_label("Target").locator("option").all_inner_texts() == ["default: none", "net"]
     add(tab, "Angle", "Particles by number", Numbers="0 1")
     tab.page.get_by_text("2 particles given; Angle needs").wait_for()
-    assert forces(tab)[-1]["kind"] == "springs"
+    assert forces(tab)[-1]["kind"] == "floor"

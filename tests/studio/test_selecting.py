@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -151,13 +152,33 @@ def test_a_range_of_forces_selects_and_a_group_is_kept_and_moved(sheet: Studio, 
     counts(sheet, SIDE**2)
 
 
+def stiffness(studio: Studio) -> Any:
+    """Of the springs of the net, as the scene has it."""
+    return studio.service.scene(studio.key)["forces"][0]["stiffness"]
+
+
 def test_springs_between_the_selected_get_a_force(sheet: Studio) -> None:
-    """A constant tension on what is selected: the 4 + 3 springs among 2 x 3 particles."""
+    """Their own stiffness and a constant tension on what is selected: the 4 + 3 springs among 2 x 3 particles; the
+    others keep theirs, and Undo takes it back."""
     page = sheet.page
     sheet.press("Box")
     corners = around(sheet, 6, 13)
     drag(sheet, corners[0], corners[2])
     counts(sheet, 6)
+    field = page.get_by_label("Stiffness of the selected springs")
+    assert field.input_value() == "500"
+    field.fill("900")
+    field.press("Enter")
+    sheet.until(lambda: isinstance(stiffness(sheet), list))
+    assert sorted(stiffness(sheet)) == [500.0] * (2 * SIDE * (SIDE - 1) - 7) + [900.0] * 7
+    among = {6, 7, 8, 11, 12, 13}
+    springs = sheet.service.client.get(f"/v1/sessions/{sheet.key}/topology").json()["springs"]
+    assert {i for i, ends in enumerate(springs) if among >= {*ends}} == {
+        i for i, value in enumerate(stiffness(sheet)) if value == 900
+    }
+    sheet.until(lambda: field.input_value() == "900")
+    sheet.press("Undo")
+    sheet.until(lambda: stiffness(sheet) == 500)
     page.get_by_text("Add a force of any kind").click()
     page.get_by_label("Kind").select_option(label="Constant tension")
     page.get_by_label("On", exact=True).select_option(label="What is picked")

@@ -100,3 +100,20 @@ def test_a_drag_is_told_at_the_hand(cable: Studio):
     cable.until(fits)
     page.mouse.up()
     told.wait_for(state="detached")
+
+
+def test_springs_without_a_rest_length_have_no_strain(tab: Studio):
+    """(l - L0) / L0 is undefined for L0 = 0: the table of a force-density net has no such column."""
+    net = {"kind": "springs", "particles": [[0, 1], [1, 2]], "stiffness": 10, "rest_factor": 0}
+    tab.service.put(
+        "tables-dense",
+        {"particles": [[0, 0, 0], [1, 0, 0], [3, 0, 0]], "forces": [net], "anchors": [{"particles": [0, 2]}]},
+    )
+    tab.open("tables-dense")
+    tab.press("Solve")
+    tab.service.at_rest("tables-dense")
+    tab.page.locator("summary", has_text="Tables").click()
+    tab.page.get_by_label("Status").locator(".stability").wait_for()  # the whole result is read
+    head = tab.page.get_by_role("region", name="Table of springs").get_by_role("columnheader")
+    tab.until(lambda: head.count() > 0)
+    assert [text.split()[0] for text in head.all_inner_texts()] == ["Spring", "Force", "Length"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from math import inf
 
 from hookean.errors import InputError, several
 
@@ -66,6 +67,9 @@ class Missed:
 
     def refusal(self, *, strict: bool) -> InputError:
         """The error if it does not: the scene is `strict`, or no anchor of it meets a particle."""
+        if self.distance == inf:
+            said = "the scene has no particles to meet; add particles, or forces with points there"
+            return InputError(self.pointer, f"{self.name}: {said}" if self.name else said)
         if strict:
             advice = f"{self._advice}, raise weld_tolerance, or set strict to false to continue without them"
         else:

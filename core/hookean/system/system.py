@@ -338,9 +338,9 @@ def _anchors(welded: Welded) -> list[Held]:
             welded.check(f"/anchors/{i}/points", anchor.name, points, particles, "point", "anchor")
             welded.check_nearest(f"/anchors/{i}/points", points, particles)
         met = particles >= 0
-        targets = welded.x[particles] if anchor.targets is None else np.asarray(anchor.targets)
+        targets = welded.x[particles[met]] if anchor.targets is None else np.asarray(anchor.targets)[met]
         free, turning = (axes_free(axes) for axes in (anchor.axes, anchor.rotations))
-        held.append(Held(i, particles[met], np.ascontiguousarray(targets[met]), free, anchor.name, turning))
+        held.append(Held(i, particles[met], np.ascontiguousarray(targets), free, anchor.name, turning))
     return held
 
 

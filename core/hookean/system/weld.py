@@ -277,8 +277,10 @@ class Welded:
     def check_nearest(self, pointer: str, points: Floats, found: Ints) -> None:
         """Report points that met the first particle within the tolerance, as welding has it, beside a nearer one."""
         spots, rows = points.reshape(-1, 3), found.ravel()
-        away = lengths(spots - self.x[rows])
-        apart = np.flatnonzero((rows >= 0) & (away > NEARER * self.tolerance))
+        met = np.flatnonzero(rows >= 0)
+        away = np.zeros(len(rows))
+        away[met] = lengths(spots[met] - self.x[rows[met]])
+        apart = np.flatnonzero(away > NEARER * self.tolerance)
         if not len(apart):
             return
         distance, nearest = (column.ravel() for column in self._tree.query(spots[apart], k=1))

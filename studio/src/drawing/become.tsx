@@ -97,7 +97,7 @@ export function Become({ of, chosen, units }: Told) {
       </label>
       {kind && (
         <details class="seldom">
-          <summary>Values of {kind.title.toLowerCase()}</summary>
+          <summary title="Of what is drawn next; defaults are in grey">Values of {kind.title.toLowerCase()}</summary>
           {fieldsOf(kind).map((field) => (
             <label key={`${kind.kind} ${field.name}`} class="field" title={field.description}>
               <span>{titled(field.name)}</span>

@@ -31,7 +31,8 @@ export function chosenOf({ options }: Studio, topology: Topology): Chosen {
     const found = mesh.faces.flatMap((face, i) => (all(face) ? [i] : []));
     if (found.length) faces[name] = found;
   }
-  const edges = springs.length ? springs.map((i) => topology.springs[i]!) : naked(topology).filter(all);
+  const own = Object.values(topology.meshes).flatMap((mesh) => mesh.faces);
+  const edges = springs.length ? springs.map((i) => topology.springs[i]!) : naked(own).filter(all);
   return { particles: [...marked], springs, faces, edges: distinct(edges as [number, number][]) };
 }
 
@@ -75,7 +76,7 @@ export function Change({ studio, pen }: { studio: Studio; pen: Pen }) {
   const several = (number: number, what: string) => (number === 1 ? `1 ${what}` : counted(number, what));
   return (
     <details class="seldom">
-      <summary>Change what is selected</summary>
+      <summary title="Divide springs and faces, extrude edges, delete">Change what is selected</summary>
       <p class="note" role="status">
         {several(particles.length, "particle")}, {several(springs.length, "spring")} and{" "}
         {several(count, "face")} selected.
@@ -107,7 +108,7 @@ export function Change({ studio, pen }: { studio: Studio; pen: Pen }) {
           `${several(count, "face")} divided`,
         )}
       </div>
-      <div class="components" role="group" aria-label="Extrude by">
+      <div class="components" role="group" aria-label="Extrude by" title="How far the new edges are from the old ones">
         <span class="seen">Extrude by</span>
         {by.value.map((value, axis) => (
           <NumberField

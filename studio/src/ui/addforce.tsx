@@ -1,6 +1,6 @@
 // A force of any kind, put on a place of a running session by its schema: an edit, which can be undone.
 import { useSignal } from "@preact/signals";
-import type { Field, SceneForce } from "../model";
+import type { Field, Kind, SceneForce } from "../model";
 import { kinds } from "./catalogue";
 import { choose, freeName, useEdit } from "./loads";
 import { type Where, placed, places } from "./targets";
@@ -45,7 +45,9 @@ export function AddForce({ studio }: { studio: Studio }) {
   };
   return (
     <details class="seldom">
-      <summary>Add a force of any kind</summary>
+      <summary title="Loads, springs, pressure, contact and all others, with their values">
+        Add a force of any kind
+      </summary>
       <form class="addforce" onSubmit={(event) => void add(event)}>
         <label class="field">
           <span>Kind</span>
@@ -73,7 +75,7 @@ export function AddForce({ studio }: { studio: Studio }) {
         </label>
         <p class="note">{kind.summary}</p>
         {open.length > 0 && (
-          <label class="field">
+          <label class="field" title="Where the force acts: all particles, what is picked or selected, springs, a mesh">
             <span>On</span>
             <select
               aria-label="On"
@@ -88,7 +90,7 @@ export function AddForce({ studio }: { studio: Studio }) {
             </select>
           </label>
         )}
-        {open.length === 0 && !kind.everywhere && <p class="note">This scene has no mesh, which this kind needs.</p>}
+        {open.length === 0 && isOnMesh(kind) && <p class="note">This scene has no mesh, which this kind needs.</p>}
         {where === "numbers" && (
           <label class="field">
             <span>Numbers</span>
@@ -105,7 +107,7 @@ export function AddForce({ studio }: { studio: Studio }) {
           <label key={`${kind.kind} ${field.name}`} class="field" title={field.description}>
             <span>{titled(field.name)}</span>
             <Input
-              field={field}
+              field={field.name === "target" ? { ...field, choices: Object.keys(topology.meshes) } : field}
               value={typed.value[field.name] ?? ""}
               put={(text) => (typed.value = { ...typed.value, [field.name]: text })}
             />
@@ -117,7 +119,11 @@ export function AddForce({ studio }: { studio: Studio }) {
             {fault.value}
           </p>
         )}
-        <button type="submit" disabled={busy || session.connection.value !== "live"}>
+        <button
+          type="submit"
+          disabled={busy || session.connection.value !== "live"}
+          title="Add this force to the model at the place and with the values above; Undo removes it"
+        >
           Add {kind.title.toLowerCase()}
         </button>
       </form>
@@ -165,12 +171,24 @@ export function valuesOf(fields: Field[], typed: Record<string, string>): Record
     if (field.type === "text" || field.choices) found[field.name] = text;
     else if (field.type === "yes or no") found[field.name] = text === "true";
     else {
-      const rows = text.split(";").map((row) => row.split(/[\s,]+/).filter(Boolean).map(Number));
-      if (rows.flat().some((value) => !Number.isFinite(value)))
-        return `${titled(field.name)}: ${text} given; give numbers, with ; between rows.`;
-      const whole = rows.length > 1 || /rows|points|lines/.test(field.type) ? rows : rows[0]!;
-      found[field.name] = whole.length === 1 && typeof whole[0] === "number" ? whole[0] : whole;
+      const isNet = /^(rows of points|lines)$/.test(field.type);
+      const rows = text.split(";").map((row) => (isNet ? row.split(",").map(numbersOf) : numbersOf(row)));
+      const isWrong = rows.flat(2).some((value) => !Number.isFinite(value));
+      if (isWrong) return `${titled(field.name)}: ${text} given; ${isNet ? OF_POINTS : OF_NUMBERS}`;
+      const whole = rows.length > 1 || /points|lines/.test(field.type) ? rows : rows[0]!;
+      const isOne = whole.length === 1 && typeof whole[0] === "number" && field.type !== "indices";
+      found[field.name] = isOne ? whole[0] : whole;
     }
   }
   return found;
 }
+
+const numbersOf = (text: string) => text.split(/[\s,]+/).filter(Boolean).map(Number);
+
+const OF_NUMBERS = "give numbers, with ; between rows.";
+const OF_POINTS = "give x y z of each point, with , between points and ; between rows.";
+
+/** Whether it acts on meshes alone. */
+const isOnMesh = ({ fields }: Kind) => has(fields, "mesh") && !has(fields, "particles");
+
+const has = (fields: Field[], name: string) => fields.some((field) => field.name === name);

@@ -156,6 +156,7 @@ function Keep({ studio: { session }, taken, done }: { studio: Studio; taken: Sum
       <input
         type="text"
         aria-label="Name of the variant"
+        title="A name for the model as it is now, such as high rise"
         maxLength={60}
         placeholder={free}
         value={name.value}

@@ -194,7 +194,7 @@ function Add({ studio, what }: { studio: Studio; what: "goal" | "constraint" }) 
   );
   return (
     <details class="seldom">
-      <summary>Add a {what}</summary>
+      <summary title="A quantity with its aim or its limits">Add a {what}</summary>
       <form class="addforce" aria-label={`New ${what}`} onSubmit={(event) => void add(event)}>
         <label class="field">
           <span>Measures</span>

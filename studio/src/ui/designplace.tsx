@@ -39,7 +39,7 @@ export function Fields({ kind, typed, place, put }: Shown) {
       {often.map(field)}
       {seldom.length > 0 && (
         <details class="seldom">
-          <summary>More fields</summary>
+          <summary title="Values that may be left as they are">More fields</summary>
           {seldom.map(field)}
         </details>
       )}

@@ -113,9 +113,9 @@ function AddVariable({ studio: { session, design, options } }: { studio: Studio 
   };
   return (
     <details class="seldom">
-      <summary>Add what may vary</summary>
+      <summary title="Values that the search may change, with their limits">Add what may vary</summary>
       <form class="addforce" onSubmit={add}>
-        <label class="field">
+        <label class="field" title="A value of a force, or the place of an anchor">
           <span>Value</span>
           <select
             aria-label="Value"
@@ -162,7 +162,9 @@ function AddVariable({ studio: { session, design, options } }: { studio: Studio 
             {fault.value}
           </p>
         )}
-        <button type="submit">Let it vary</button>
+        <button type="submit" title="The search changes this value between the limits above">
+          Let it vary
+        </button>
       </form>
     </details>
   );

@@ -72,7 +72,7 @@ function Force({ session, force, number, units }: Shown) {
       {often.map(column)}
       {seldom.length > 0 && (
         <details class="seldom">
-          <summary>More fields of {title}</summary>
+          <summary title="Values that are not given, or are 0">More fields of {title}</summary>
           {seldom.map(column)}
         </details>
       )}

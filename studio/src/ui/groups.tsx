@@ -39,11 +39,17 @@ export function Groups({ studio: { options }, chosen, choose }: Told) {
         <input
         type="text"
           aria-label="Name of the group"
+          title="A name for the selected particles, such as edge"
           placeholder="Name"
           value={name.value}
           onInput={(event) => (name.value = event.currentTarget.value)}
         />
-        <button type="submit" class="small" disabled={!chosen.length || !name.value.trim()}>
+        <button
+          type="submit"
+          class="small"
+          title="The selection under this name, with a colour; saved with the model"
+          disabled={!chosen.length || !name.value.trim()}
+        >
           Keep as a group
         </button>
       </form>
@@ -66,6 +72,7 @@ export function Groups({ studio: { options }, chosen, choose }: Told) {
               type="button"
               class="plain"
               aria-label={`Forget the group ${called}`}
+              title="Forget the group; its particles stay"
               onClick={() => forget(called)}
             >
               ×

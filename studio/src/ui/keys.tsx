@@ -44,7 +44,13 @@ export function Keys({ studio }: { studio: Studio }) {
   }, [studio]);
   return (
     <>
-      <button type="button" class="help" aria-keyshortcuts="?" onClick={() => dialog.current?.showModal()}>
+      <button
+        type="button"
+        class="help"
+        title="The keys that replace the mouse (?)"
+        aria-keyshortcuts="?"
+        onClick={() => dialog.current?.showModal()}
+      >
         Keys
       </button>
       <dialog ref={dialog} aria-labelledby="keys-title">

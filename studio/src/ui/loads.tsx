@@ -38,11 +38,21 @@ export function AddLoad({ session }: { session: Session }) {
   const disabled = busy || session.connection.value !== "live";
   return (
     <div class="row">
-      <button type="button" disabled={disabled} onClick={load}>
+      <button
+        type="button"
+        disabled={disabled}
+        title="A force downwards on every particle that is not held; its size can be changed above"
+        onClick={load}
+      >
         Add a load
       </button>
       {!scene.forces.some((force) => force.kind === "self_weight") && (
-        <button type="button" disabled={disabled} onClick={weight}>
+        <button
+          type="button"
+          disabled={disabled}
+          title="The weight of the model itself, shared among all particles; its total can be changed above"
+          onClick={weight}
+        >
           Add self weight
         </button>
       )}
@@ -86,6 +96,7 @@ export function RemoveForce({ session, number, title }: { session: Session; numb
       type="button"
       class="small"
       aria-label={`Remove ${title}`}
+      title="Remove this force from the model; Undo restores it"
       disabled={busy || session.connection.value !== "live"}
       onClick={() => void make({ remove: [number] }, `${title} was removed; Undo restores it.`)}
     >

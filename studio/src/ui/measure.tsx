@@ -33,7 +33,7 @@ export function Measure({ studio }: { studio: Studio }) {
   };
   return (
     <details class="seldom" onToggle={(event) => event.currentTarget.open || measure("")}>
-      <summary>Measure</summary>
+      <summary title="Distances and angles between particles">Measure</summary>
       <label class="field" title="Two particles: their distance. Three: the angle at the second one, too">
         <span>Particles</span>
         <input

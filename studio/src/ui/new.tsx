@@ -41,7 +41,9 @@ export function New() {
   const take = (name: string, value: number | string) => (typed.value = { ...typed.value, [name]: value });
   return (
     <details class="seldom">
-      <summary>New model</summary>
+      <summary title="A cable, net, dome, vault or other shape from its measures, or an empty page to draw on">
+        New model
+      </summary>
       <form class="addforce" onSubmit={(event) => void make(event)}>
         <label class="field">
           <span>Shape</span>
@@ -64,6 +66,7 @@ export function New() {
           <Choice
             key={which}
             name={`Unit of ${which}`}
+            hint="Of all numbers of the model; it can be another for each model"
             value={units.value[which]}
             choices={which === "length" ? LENGTHS : FORCES}
             done={(value) => (units.value = { ...units.value, [which]: value })}
@@ -82,7 +85,11 @@ export function New() {
             <NumberField key={key} name={seen} seen={seen} {...told} value={value} bounds={field.bounds} done={done} />
           );
         })}
-        <button type="submit" disabled={busy.value}>
+        <button
+          type="submit"
+          disabled={busy.value}
+          title="A new session with this model; its measures can be changed later"
+        >
           Make the {family?.title.toLowerCase() ?? "empty page"}
         </button>
       </form>

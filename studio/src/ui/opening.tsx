@@ -42,7 +42,12 @@ export function FileButton() {
         Drop a file anywhere on this page: a saved model (.hookean), a Rhino model (.3dm), an OBJ mesh, a COMPAS
         document or a scene (.json), or a saved simulation (.npz).
       </p>
-      <button type="button" disabled={opening.value !== ""} onClick={() => input.current?.click()}>
+      <button
+        type="button"
+        disabled={opening.value !== ""}
+        title="Choose a file of this computer; drawn files get a role for each layer first"
+        onClick={() => input.current?.click()}
+      >
         {opening.value ? `Opening ${opening.value} ...` : "Open a file ..."}
       </button>
       <input

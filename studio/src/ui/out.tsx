@@ -176,7 +176,11 @@ export function OutPanel({ studio, title }: { studio: Studio; title: string }) {
           </button>
         ))}
         {!session.readOnly && (
-          <button type="button" title="For browsers that are logged in to this service" onClick={() => void copy()}>
+          <button
+            type="button"
+            title="The address of this session, for a browser that is logged in"
+            onClick={() => void copy()}
+          >
             Copy link
           </button>
         )}

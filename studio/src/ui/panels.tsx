@@ -23,9 +23,9 @@ import { Timeline } from "./timeline";
 import { TagsChoice } from "./tags";
 
 export function Panels({ studio, title }: { studio: Studio; title: string }) {
-  // who begins with an empty page draws, also after the first corner
+  // who begins with an empty page, or with points alone, draws, also after the first corner
   const isBlank = useRef(false);
-  isBlank.current ||= studio.session.topology.value?.particles === 0;
+  isBlank.current ||= studio.session.topology.value?.forces.length === 0;
   const isOwn = !studio.session.readOnly;
   return (
     <aside class="panels" aria-label="Panels">
@@ -89,6 +89,22 @@ export function Panels({ studio, title }: { studio: Studio; title: string }) {
   );
 }
 
+const INSIDE: Record<string, string> = {
+  Picked: "Numbers of what is picked; several selected, held, moved, measured",
+  Draw: "Particles, lines and faces drawn by clicks; springs and faces divided",
+  Shape: "The measures that this model was made from",
+  Forces: "The forces of the model with their values, and new ones; the solver",
+  See: "Colours, layers, labels and the section plane",
+  "Load cases": "The form under each case and combination of loads",
+  Surface: "Heights, slopes, curvature and the ways of water",
+  Charts: "Residual, energy and what is picked, over the last minute",
+  Time: "Recordings, bookmarks and videos",
+  Tables: "Springs, particles and reactions in numbers",
+  Design: "Values found by a search for goals",
+  Compare: "Variants of the model, and their differences",
+  Out: "The model as a file, picture or link",
+};
+
 interface Told {
   name: string;
   isClosed?: boolean;
@@ -100,7 +116,7 @@ function Panel({ name, isClosed = false, isOpen = false, children }: Told) {
   const narrow = window.matchMedia("(max-width: 820px)").matches;
   return (
     <details class="panel" open={isOpen || (!narrow && !isClosed) || ["Picked", "Shape", "Forces"].includes(name)}>
-      <summary>
+      <summary title={INSIDE[name]}>
         <h2>{name}</h2>
       </summary>
       <div class="inside">{children}</div>

@@ -23,6 +23,7 @@ export function PickedPanel({ studio }: { studio: Studio }) {
       value={picked?.kind === kind ? picked.index : null}
       unit=""
       whole
+      hint={`Pick a ${kind} by its number`}
       placeholder={count ? `0 to ${count - 1}` : "none"}
       bounds={{ minimum: 0, maximum: count - 1 }}
       disabled={!count}

@@ -2,8 +2,10 @@
 import type { Anchor, Patch, Scene, Summary, Topology } from "../model";
 import type { Session } from "../session";
 import { extremes } from "../view/extremes";
+import { facesOf } from "../view/form";
+import { naked } from "../view/sets";
 import { useEdit } from "./loads";
-import { said } from "./words";
+import { counted, said } from "./words";
 
 interface Repair {
   seen: string;
@@ -99,33 +101,33 @@ function ofSize(topology: Topology, { units }: Scene): Repair[] {
 }
 
 /** Whether nothing holds the form: no anchor, no support and no floor. */
-function isLoose(anchors: Anchor[], scene: Scene): boolean {
+export function isLoose(anchors: Anchor[], scene: Scene): boolean {
   const supports = ["support", "anchor_spring", "floor", "solid_plane_collide"];
   const held = anchors.some((anchor) => anchor.particles.length && anchor.axes);
   return !held && !scene.settings["floor"] && !scene.forces.some((force) => supports.includes(force.kind));
 }
 
-/** Ways to hold a form: the rim of its meshes, the ends of its lines. */
+/** The particles at the least height; none of a form that is level. */
+function lowest({ start }: Topology): number[] {
+  const [low, high] = extremes(start.map(([, , z]) => z));
+  const level = low + 1e-3 * (high - low);
+  return high > low ? start.flatMap(([, , z], i) => (z <= level ? [i] : [])) : [];
+}
+
+/** Ways to hold a form: the rim of its meshes, the ends of its lines; of a closed one where it stands. */
 const holds = once((topology): Repair[] => {
-  const edges = new Map<string, [number, number]>();
-  for (const { faces } of Object.values(topology.meshes))
-    for (const face of faces.map((corners) => [...new Set(corners)]))
-      face.forEach((a, i) => {
-        const b = face[(i + 1) % face.length]!;
-        const key = a < b ? `${a} ${b}` : `${b} ${a}`;
-        if (!edges.delete(key)) edges.set(key, [a, b]);
-      });
   const counts = new Map<number, number>();
   for (const particle of topology.springs.flat()) counts.set(particle, (counts.get(particle) ?? 0) + 1);
   const places: [string, number[]][] = [
-    ["rim", [...new Set([...edges.values()].flat())]],
+    ["rim", [...new Set(naked(facesOf(topology)).flat())]],
     ["ends", [...counts].filter(([, count]) => count === 1).map(([particle]) => particle)],
   ];
+  if (!places.some(([, particles]) => particles.length)) places.push(["lowest particles", lowest(topology)]);
   return places
     .filter(([, particles]) => particles.length)
     .map(([name, particles]) => ({
       seen: `Hold the ${name}`,
       patch: { pin: [{ particles: particles.sort((a, b) => a - b) }] },
-      done: `The ${name} is held where it is, ${particles.length} particles.`,
+      done: `${counted(particles.length, "particle")} held where they are; Undo takes it back.`,
     }));
 });

@@ -1,6 +1,6 @@
 // The status of the session in a sentence, the warnings of its report, and losses.
 import { useEffect } from "preact/hooks";
-import { Repairs } from "./repairs";
+import { isLoose, Repairs } from "./repairs";
 import { tellReturns } from "./returns";
 import { Stable } from "./stable";
 import type { Studio } from "./studio";
@@ -84,7 +84,10 @@ function Now({ studio: { session } }: { studio: Pick<Studio, "session"> }) {
 
 function Warnings({ studio }: { studio: Studio }) {
   const { session, options, view } = studio;
-  const warnings = session.summary.value?.warnings ?? [];
+  const scene = session.scene.value;
+  // below, the repairs report it with what to do
+  const isKnown = scene !== null && isLoose(session.anchors.value, scene);
+  const warnings = (session.summary.value?.warnings ?? []).filter((said) => !isKnown || said !== "nothing is held");
   if (!warnings.length) return null;
   const springs = session.topology.value?.springs ?? [];
   return (

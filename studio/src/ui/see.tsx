@@ -12,6 +12,24 @@ const COLOURINGS: [Colouring, string][] = [
   ["plain", "Plain"],
 ];
 
+const HINTS: Record<Colouring, string> = {
+  force: "Force in each spring: tension is above 0, compression below",
+  strain: "Change of length over rest length, 0 at rest; 0.01 is 1 %",
+  plain: "One colour",
+  given: "Numbers that a program gave",
+};
+
+const LAYERS: Record<Layer, string> = {
+  mesh: "Faces",
+  springs: "Springs and other lines on which forces act",
+  particles: "Particles that are not held",
+  anchors: "Particles that are held, as squares",
+  loads: "Arrows of the forces on particles, in proportion to the longest",
+  reactions: "Arrows of the forces that hold particles, in proportion to the longest",
+  floor: "The plane on which particles come to rest",
+  guides: "Curves and surfaces that forces pull to",
+};
+
 const LOCKS: [Lock, string][] = [
   ["view", "View plane"],
   ["x", "x axis"],
@@ -38,7 +56,7 @@ export function SeePanel({ studio: { options, session } }: { studio: Studio }) {
       <fieldset class="choices">
         <legend>Colour springs by</legend>
         {colourings.map(([name, seen]) => (
-          <label key={name}>
+          <label key={name} title={HINTS[name]}>
             <input
               type="radio"
               name="colouring"
@@ -54,7 +72,7 @@ export function SeePanel({ studio: { options, session } }: { studio: Studio }) {
       <fieldset class="choices layers">
         <legend>Layers</legend>
         {(Object.keys(layers) as Layer[]).map((layer) => (
-          <label key={layer}>
+          <label key={layer} title={LAYERS[layer]}>
             <input
               type="checkbox"
               checked={layers[layer]}
@@ -65,7 +83,7 @@ export function SeePanel({ studio: { options, session } }: { studio: Studio }) {
         ))}
       </fieldset>
       {!session.readOnly && (
-        <label class="field">
+        <label class="field" title="Along what a dragged particle moves; view plane: as the pointer">
           <span>Drag along</span>
           <select
             value={options.lock.value}

@@ -9,6 +9,7 @@ import { titleOf } from "./forces";
 import { Groups } from "./groups";
 import { useEdit } from "./loads";
 import { NumberField } from "./number";
+import { Stiffen } from "./stiffen";
 import type { Studio } from "./studio";
 import { counted, titled } from "./words";
 
@@ -38,7 +39,9 @@ export function Selected({ studio }: { studio: Studio }) {
   );
   return (
     <details class="seldom">
-      <summary>Select several</summary>
+      <summary title="By a box, a line around them, a part or a range of forces; then hold, move or name them">
+        Select several
+      </summary>
       <div class="row" role="group" aria-label="Ways to select">
         {TOOLS.map(([tool, seen, hint]) => (
           <button
@@ -70,6 +73,7 @@ export function Selected({ studio }: { studio: Studio }) {
         {!session.readOnly && ' Forces are added to them by "What is picked" below.'}
       </p>
       {!session.readOnly && <Acts studio={studio} chosen={chosen} />}
+      {!session.readOnly && <Stiffen studio={studio} chosen={chosen} />}
       {!session.readOnly && <Groups studio={studio} chosen={chosen} choose={choose} />}
     </details>
   );
@@ -132,6 +136,7 @@ function ByForce({ studio: { session }, choose }: { studio: Studio; choose: (par
       value={range.value[which]}
       unit={topology.units.force}
       placeholder="any"
+      hint="Tension is above 0, compression below; empty: no limit"
       done={(value) => (range.value = { ...range.value, [which]: value })}
     />
   );
@@ -168,11 +173,18 @@ function Acts({ studio: { session }, chosen }: { studio: Studio; chosen: number[
   const unit = session.topology.value?.units.length ?? "";
   return (
     <>
-      <Choice name="Hold along" value={axes.value} choices={AXES} done={(to) => (axes.value = to)} />
+      <Choice
+        name="Hold along"
+        hint="The axes along which particles cannot move; xyz: not at all, z: they slide in a level plane"
+        value={axes.value}
+        choices={AXES}
+        done={(to) => (axes.value = to)}
+      />
       <div class="row">
         <button
           type="button"
           class="small"
+          title="Selected particles stay where they are, along the axes above"
           disabled={!able || !chosen.length}
           onClick={() =>
             void make({ pin: [{ particles: chosen, axes: axes.value }] }, `${counted(chosen.length, "particle")} held.`)
@@ -183,13 +195,19 @@ function Acts({ studio: { session }, chosen }: { studio: Studio; chosen: number[
         <button
           type="button"
           class="small"
+          title="Selected particles that are held follow the forces again"
           disabled={!able || !fixed.length}
           onClick={() => void make({ release: fixed }, `${counted(fixed.length, "particle")} released.`)}
         >
           Release the selected
         </button>
       </div>
-      <div class="components" role="group" aria-label="Move by">
+      <div
+        class="components"
+        role="group"
+        aria-label="Move by"
+        title="How far held particles are moved along each axis"
+      >
         <span class="seen">Move by</span>
         {shift.value.map((value, axis) => (
           <NumberField
@@ -203,7 +221,13 @@ function Acts({ studio: { session }, chosen }: { studio: Studio; chosen: number[
         ))}
         <span class="unit">{unit}</span>
       </div>
-      <button type="button" class="small" disabled={!able || !fixed.length} onClick={move}>
+      <button
+        type="button"
+        class="small"
+        title="Selected particles that are held go so far; Solve finds the form of the others"
+        disabled={!able || !fixed.length}
+        onClick={move}
+      >
         Move the held ones
       </button>
     </>

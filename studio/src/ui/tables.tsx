@@ -45,7 +45,13 @@ export function Tables({ studio }: { studio: Studio }) {
     <div class="tables" ref={root}>
       <div class="row" role="group" aria-label="Table">
         {TABLES.map((name) => (
-          <button key={name} type="button" aria-pressed={name === what} onClick={() => show(name)}>
+          <button
+            key={name}
+            type="button"
+            title={`The table of ${name}; a click on a heading sorts it`}
+            aria-pressed={name === what}
+            onClick={() => show(name)}
+          >
             {titled(name)}
           </button>
         ))}
@@ -128,6 +134,7 @@ function Rows({ studio: { options }, table, places, by, sort }: OfRows) {
                       type="button"
                       aria-pressed={isPicked}
                       aria-label={`Pick ${table.kind} ${index}`}
+                      title={`Pick ${table.kind} ${index}`}
                       onClick={() => (options.picked.value = { kind: table.kind, index })}
                     >
                       {index}

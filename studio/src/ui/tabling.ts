@@ -45,7 +45,10 @@ function springs({ frame, topology, result }: Known): Table {
     { name: "length", unit: length, values: lengths, adds: true },
   ];
   for (const name of ["strain", "utilisation"]) {
-    const values = result && ofSprings(result, topology, name).map((value) => 100 * value);
+    // a spring whose rest length is 0 has no strain, which the result writes as 0
+    const isNone = (value: number, i: number) => name === "strain" && value === 0 && frame.springForces[i] !== 0;
+    const read = result && ofSprings(result, topology, name);
+    const values = read?.map((value, i) => (isNone(value, i) ? NaN : 100 * value));
     if (values?.some(Number.isFinite)) columns.push({ name, unit: "%", values });
   }
   return { kind: "spring", rows: topology.springs.map((_, i) => i), columns };

@@ -121,6 +121,7 @@ function Bookmarks({ studio: { film, view } }: { studio: Studio }) {
         <input
           type="text"
           aria-label="Name of the bookmark"
+          title="A name for the shape and view that are shown"
           maxLength={60}
           placeholder={free}
           value={name.value}

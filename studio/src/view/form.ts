@@ -22,7 +22,7 @@ export function form(topology: Topology): Form {
   topology.springs.forEach(([a, b]) => known.add(key(a, b)));
   const strokes: number[] = [];
   for (const [a, b] of pieces(topology)) if (fresh(a, b)) strokes.push(a, b);
-  const all = faces(topology);
+  const all = facesOf(topology);
   const edges: number[] = [];
   for (const face of all)
     face.forEach((a, i) => fresh(a, face[(i + 1) % face.length]!) && edges.push(a, face[(i + 1) % face.length]!));
@@ -38,7 +38,7 @@ export function form(topology: Topology): Form {
 }
 
 /** Faces of all meshes, each once, by particles. A mesh that is carried is mostly one that forces act on, too. */
-function faces(topology: Topology): number[][] {
+export function facesOf(topology: Pick<Topology, "meshes" | "geometry">): number[][] {
   const carried = topology.geometry
     .filter((item) => item.kind === "mesh" && item.faces)
     .map((item) => {

@@ -1,5 +1,6 @@
 // Sets of particles: those inside of a line on the picture, along a row of springs, at springs of a range of forces.
 import type { Point, Topology } from "../model";
+import { facesOf } from "./form";
 
 export interface Place {
   x: number;
@@ -73,27 +74,25 @@ export function between(forces: Float32Array, low: number | null, high: number |
 export const endsOf = (springs: Topology["springs"], chosen: number[]) =>
   [...new Set(chosen.flatMap((spring) => springs[spring] ?? []))].sort((a, b) => a - b);
 
-/** Edges of meshes at which there is one face alone. */
-export function naked({ meshes }: Pick<Topology, "meshes">): [number, number][] {
+/** Edges at which there is one of these faces alone. */
+export function naked(faces: number[][]): [number, number][] {
   const seen = new Map<string, { edge: [number, number]; count: number }>();
-  for (const { faces } of Object.values(meshes)) {
-    for (const face of faces) {
-      const corners = [...new Set(face)];
-      corners.forEach((a, i) => {
-        const edge: [number, number] = [a, corners[(i + 1) % corners.length]!];
-        const name = [...edge].sort((one, other) => one - other).join(" ");
-        const found = seen.get(name) ?? { edge, count: 0 };
-        seen.set(name, { edge, count: found.count + 1 });
-      });
-    }
+  for (const face of faces) {
+    const corners = [...new Set(face)];
+    corners.forEach((a, i) => {
+      const edge: [number, number] = [a, corners[(i + 1) % corners.length]!];
+      const name = [...edge].sort((one, other) => one - other).join(" ");
+      const found = seen.get(name) ?? { edge, count: 0 };
+      seen.set(name, { edge, count: found.count + 1 });
+    });
   }
   return [...seen.values()].filter(({ count }) => count === 1).map(({ edge }) => edge);
 }
 
 /** The particles along the edges of meshes that hang together with some particles on an edge, in ascending order. */
-export function rim(topology: Pick<Topology, "meshes">, from: number[]): number[] {
+export function rim(topology: Pick<Topology, "meshes" | "geometry">, from: number[]): number[] {
   const next = new Map<number, number[]>();
-  for (const [a, b] of naked(topology)) {
+  for (const [a, b] of naked(facesOf(topology))) {
     next.set(a, [...(next.get(a) ?? []), b]);
     next.set(b, [...(next.get(b) ?? []), a]);
   }

@@ -57,6 +57,12 @@ def build(drawing: Drawing, recipe: Mapping[str, Any], *, lenient: bool = False)
     return _Builder(drawing, recipe, lenient).built()
 
 
+def _drawn_on(anchors: Sequence[Shape | None]) -> list[Any]:
+    """Coordinates of anchors that no force connects: particles between which lines can be drawn [length]."""
+    found = [shape.array.reshape(-1, 3) for shape in anchors if shape is not None]
+    return np.unique(np.concatenate(found), axis=0).tolist() if found else []
+
+
 class _Builder:
     def __init__(self, drawing: Drawing, recipe: Mapping[str, Any], lenient: bool) -> None:
         self.drawing, self.lenient = drawing, lenient
@@ -89,6 +95,8 @@ class _Builder:
         for group in placed:
             scene[group] = [table for table, _ in placed[group]]
         scene["geometry"] = [table for table, _ in carried]
+        if not self.lenient and not scene["forces"] and "particles" not in scene:
+            scene["particles"] = _drawn_on([shape for _, shape in placed["anchors"]])
         made = {n: {"vertices": s.array, "faces": s.faces} for n, s in self.meshes.items()}
         if isinstance(self.recipe.get("meshes", {}), Mapping):  # else the scene refuses it
             scene["meshes"] = {**self.literal, **made}

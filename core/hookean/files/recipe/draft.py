@@ -28,7 +28,7 @@ from hookean.files.recipe.compose import recipe_of
 from hookean.files.recipe.drawing import Drawing, drawing
 from hookean.files.recipe.foreign import drawn_in, model_of
 from hookean.files.recipe.notes import notes
-from hookean.files.recipe.roles import ROLES, converted, role_names, usable
+from hookean.files.recipe.roles import IGNORE, ROLES, converted, role_names, usable
 from hookean.files.recipe.rows import Entry, Row, fill, guess, own, rows_of
 from hookean.files.recipe.select import count
 from hookean.files.recipe.snapping import Floats, distances
@@ -42,9 +42,10 @@ MANY = {"face of membrane": "faces of membrane"}
 NOTHING = "nothing becomes springs or a membrane yet"
 CHOOSE = f"{NOTHING}; give a layer one of these roles"
 UNCONNECTED = (
-    "the file has points that can be anchors or loads, but no curves or surfaces that connect them; draw lines or a "
-    "mesh between the points in Rhino, save the file, and open it again"
+    "the file has points that can be anchors or loads, but no curves or surfaces that connect them; give a layer the "
+    "role anchors and draw lines between its points in the studio, or draw them in Rhino"
 )
+TO_CONNECT = "no curves or surfaces connect the points; draw lines between them, in the panel Draw of the studio"
 UNDRAWN = "the file has no points, curves or surfaces; draw lines or a mesh in Rhino, save the file, and open it again"
 
 
@@ -237,12 +238,14 @@ def _solvable(found: Draft, sources: Mapping[str, list[int]]) -> None:
     from hookean.running.result import held_particles
     from hookean.system.system import compile
 
-    if all(table.get("kind", "unary") in ("unary", "pull_to_curve") for table in found.recipe["forces"]):
+    forces = found.recipe["forces"]
+    are_points = not forces and {row.family for row in found.rows if row.role != IGNORE} == {"points"}
+    if not are_points and all(table.get("kind", "unary") in ("unary", "pull_to_curve") for table in forces):
         found.fault = _nothing(found.rows)
         return
     try:
         built = build(found.drawing, found.recipe)
-        system = compile(built.scene)
+        system = compile(built.scene, empty=are_points)
     except InputError as error:
         found.fault = _placed(error, found, sources)
         return
@@ -250,7 +253,7 @@ def _solvable(found: Draft, sources: Mapping[str, list[int]]) -> None:
     found.particles = len(system.points)
     found.held = len(held_particles(system, system.start()))
     found.notes = [*found.drawing.model.warnings, *notes(found.drawing, built, conventional=False)]
-    found.notes += [*report.left_out(), *report.warnings]
+    found.notes += [*report.left_out(), *report.warnings, *([TO_CONNECT] if are_points else [])]
     elements = Counter[int]()
     for group in system.all_groups:
         for part in group.parts:
