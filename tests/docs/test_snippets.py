@@ -61,7 +61,8 @@ def test_a_picture_is_made_by_the_code_of_its_page(page: Path) -> None:
 @pytest.mark.parametrize("page", snippets.PAGES, ids=lambda page: page.stem)
 def test_a_screen_is_taken_by_a_task_of_the_studio(page: Path) -> None:
     """Every picture of the studio is of a step that the tests drive, and is there."""
-    steps = (Path(__file__).parents[1] / "studio" / "tasks.py").read_text("utf-8")
+    driven = Path(__file__).parents[1] / "studio"
+    steps = "".join((driven / name).read_text("utf-8") for name in ("tasks.py", "drawing.py"))
     for name in re.findall(r"!\[[^\]]+\]\(screens/([^)]+)\.png\)", page.read_text("utf-8")):
         assert f'see("{name}")' in steps and (page.parent / "screens" / f"{name}.png").is_file(), name
 

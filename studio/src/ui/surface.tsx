@@ -2,7 +2,7 @@
 import type { SurfaceRead, Units } from "../model";
 import { NumberField } from "./number";
 import type { Studio } from "./studio";
-import { type Chosen, type Scalar, SCALARS, type Surfacing } from "./surfacing";
+import { type Chosen, type OfScalar, type Scalar, SCALARS, type Surfacing } from "./surfacing";
 import { counted, measured, said } from "./words";
 
 export function SurfacePanel({ studio }: { studio: Studio }) {
@@ -117,7 +117,7 @@ function Found({ studio, surfacing, units }: OfFound) {
   const one = SCALARS.find(({ name }) => name === chosen.scalar);
   return (
     <>
-      {one && <Ends studio={studio} name={one.seen} values={read[one.name]} unit={one.unit(units)} isOfCloth={one.isOfCloth} />}
+      {one && <Ends studio={studio} scalar={one} values={read[one.name]} unit={one.unit(units)} />}
       {chosen.water && read.water.stays.length > 0 && <p role="status">{drops(read)}</p>}
     </>
   );
@@ -131,13 +131,12 @@ function drops({ water: { stays } }: SurfaceRead): string {
 
 interface OfEnds {
   studio: Studio;
-  name: string;
+  scalar: OfScalar;
   values: (number | null)[];
   unit: string;
-  isOfCloth?: boolean;
 }
 
-function Ends({ studio: { options }, name, values, unit, isOfCloth }: OfEnds) {
+function Ends({ studio: { options }, scalar, values, unit }: OfEnds) {
   let [low, high] = [-1, -1];
   values.forEach((value, i) => {
     if (value === null) return;
@@ -145,12 +144,12 @@ function Ends({ studio: { options }, name, values, unit, isOfCloth }: OfEnds) {
     if (high < 0 || value > values[high]!) high = i;
   });
   if (low < 0) {
-    const why = isOfCloth
+    const why = scalar.isOfCloth
       ? "its membrane has no strength; give it a material that has one."
       : "all its particles are on the boundary.";
     return (
       <p class="faint">
-        {name} is undefined on this surface: {why}
+        {scalar.seen} is undefined on this surface: {why}
       </p>
     );
   }

@@ -254,7 +254,7 @@ class _Builder:
         if surfaces:
             shape = self._joined(surfaces, own, pointer, term)
             if len(shape.array) and term.feature == "rim":
-                others = [item for item in self._selected("mesh", shapes.is_mesh) if item not in surfaces]
+                others = [i for i in self._selected("mesh", meshes) if i not in surfaces]
                 found.append(shapes.rim(shape, self._joined(others, None, pointer), self.tolerance))
             elif len(shape.array):
                 found.append(shapes.mesh_points(shape, term.feature, self.tolerance))
@@ -270,10 +270,10 @@ class _Builder:
         """The curves that become lines of forces, or what becomes their meshes."""
         found: list[Item] = []
         for number, table in enumerate(self._tables("forces")):
-            pointer = f"/forces/{number}/{place}"
+            at = f"/forces/{number}/{place}"
             if is_selector(table.get(place)) and not self._literal_mesh(place, table):
-                found += [item for term in terms(table[place], pointer) for item in select(self.drawing, term, pointer)]
-        return [item for item in dict.fromkeys(found) if fits(item)]
+                found += [i for term in terms(table[place], at) for i in select(self.drawing, term, at)]
+        return [i for i in dict.fromkeys(found) if fits(i)]
 
     def _lines(self, term: Term, own: Split | None, pointer: str) -> list[Shape]:
         _plain(term, pointer)
