@@ -198,7 +198,8 @@ def test_cloth_is_coloured_by_its_utilisation(studio: Studio):
         "meshes": {"skin": {"vertices": mesh.vertices.tolist(), "faces": mesh.faces.tolist()}},
         "materials": {"cloth": cloth},
         "forces": [{"kind": "membrane", "mesh": "skin", "material": "cloth", "warp": [1, 0, 0],
-                    "prestress": [3.0, 2.5, 0.0]}],
+                    "prestress": [3.0, 2.5, 0.0]},
+                   {"kind": "area_weight", "mesh": "skin", "weight": 5.0}],
         "anchors": [{"particles": naked_vertices(mesh).tolist()}],
     })  # fmt: skip
     service.act("cloth", "relax")
