@@ -267,7 +267,7 @@ class _Builder:
         return shapes.loose(shapes.concatenated(mine, 3), shapes.concatenated(rest, 3), self.tolerance)
 
     def _selected(self, place: str, fits: Callable[[Item], bool]) -> list[Item]:
-        """What becomes lines or meshes of forces."""
+        """What becomes lines or meshes."""
         found: list[Item] = []
         for number, table in enumerate(self._tables("forces")):
             at = f"/forces/{number}/{place}"
