@@ -182,7 +182,7 @@ interface OfOthers {
 function Others({ sessions, chosen, choose }: OfOthers) {
   if (!sessions.length) return null;
   return (
-    <label class="field">
+    <label class="field" title="A session of this service that is drawn over or beside this one, as a variant">
       <span>Other session</span>
       <select
         aria-label="Other session"
