@@ -25,7 +25,7 @@ Floats = NDArray[np.float64]
 
 NO_STEP = "The search found no step that leads further; this is the best so far."
 WANDERS = 100  # iterations of SLSQP, after which it makes no headway
-MET = 1e-20  # part of the first objective: goals are met
+MET = 1e-18  # part of the first objective, residuals 1e-9 of the first: goals are met
 SLOW = 50  # evaluations of least squares, after which second derivatives are asked for
 ATTEMPTS = 4  # of a search with constraints, each from the best so far
 FLAT = 1e-30  # slopes of small weights or units are small: only none at all ends a search
