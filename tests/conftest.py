@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import os
 from collections.abc import Iterator
 from typing import Any
 
@@ -26,6 +27,8 @@ WAITING = ("server", "faults", "components")
 COMPUTING = ("docs", "tests", "fuzz", "canvas", "laws", "files")
 """Folders whose tests keep a processor busy; all others follow. In both the longest tests come first, so that no worker
 is left alone with one of them."""
+BEHIND = 5
+"""The niceness of workers that have no test of the studio."""
 APART = ("laws/test_laws.py", "laws/test_determinism.py", "core/test_equilibrium.py")
 """Long files whose functions share nothing that takes long to make: several workers can have a part of one."""
 
@@ -62,6 +65,13 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
                 node.shutdown()
 
     return Units(config, log)
+
+
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Let the studio's tests go first: they take longest, one after the other, and wait for much."""
+    beside = hasattr(os, "nice") and "PYTEST_XDIST_WORKER" in os.environ and item.path.parent.name != "studio"
+    if beside and os.nice(0) < BEHIND:
+        os.nice(BEHIND)
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
