@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import os
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -27,6 +28,8 @@ WAITING = ("server", "faults", "components")
 COMPUTING = ("docs", "tests", "fuzz", "canvas", "laws", "files")
 """Folders whose tests keep a processor busy; all others follow. In both the longest tests come first, so that no worker
 is left alone with one of them."""
+STUDIO = sorted(path.name for path in (Path(__file__).parent / "studio").glob("test_*.py"))
+PARTS = 4  # of them: as many as there are workers
 BEHIND = 5
 """The niceness of workers that have no test of the studio."""
 APART = ("laws/test_laws.py", "laws/test_determinism.py", "core/test_equilibrium.py")
@@ -34,11 +37,11 @@ APART = ("laws/test_laws.py", "laws/test_determinism.py", "core/test_equilibrium
 
 
 def unit(test: str) -> str:
-    """What a worker takes as a whole: a file, with its fixtures; a function of `APART`; half of the tests with a
+    """What a worker takes as a whole: a file, with its fixtures; a function of `APART`; a part of the tests with a
     browser, which share it, its service and the scripts it has compiled."""
     file, _, function = test.partition("::")
     if file.startswith("tests/studio/"):
-        return "studio, first half" if file < "tests/studio/test_q" else "studio, second half"
+        return f"studio, part {STUDIO.index(Path(file).name) % PARTS}"
     return f"{file}::{function.partition('[')[0]}" if file.endswith(APART) else file
 
 
