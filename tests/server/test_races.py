@@ -416,7 +416,7 @@ def test_an_answer_over_the_socket_is_never_older_than_the_state_before_it() -> 
             return begun
 
     class Socket:
-        asked = asyncio.Event()
+        asked, scope = asyncio.Event(), dict[str, Any]()
 
         async def receive(self) -> dict[str, Any]:
             if self.asked.is_set():
