@@ -28,7 +28,7 @@ from hookean.files.recipe.compose import recipe_of
 from hookean.files.recipe.drawing import Drawing, drawing
 from hookean.files.recipe.foreign import drawn_in, model_of
 from hookean.files.recipe.notes import notes
-from hookean.files.recipe.roles import IGNORE, ROLES, converted, role_names, usable
+from hookean.files.recipe.roles import ROLES, converted, role_names, usable
 from hookean.files.recipe.rows import Entry, Row, fill, guess, own, rows_of
 from hookean.files.recipe.select import count
 from hookean.files.recipe.snapping import Floats, distances
@@ -239,7 +239,7 @@ def _solvable(found: Draft, sources: Mapping[str, list[int]]) -> None:
     from hookean.system.system import compile
 
     forces = found.recipe["forces"]
-    are_points = not forces and {row.family for row in found.rows if row.role != IGNORE} == {"points"}
+    are_points = not forces and {row.family for row in found.rows} == {"points"}
     if not are_points and all(table.get("kind", "unary") in ("unary", "pull_to_curve") for table in forces):
         found.fault = _nothing(found.rows)
         return
