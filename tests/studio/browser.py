@@ -198,7 +198,7 @@ class Studio:
 def context(browser: Any, **options: Any) -> BrowserContext:
     """A browser of somebody: own cookies, nothing from before."""
     made: BrowserContext = browser.new_context(**{"viewport": LAPTOP, "accept_downloads": True, **options})
-    made.set_default_timeout(1000 * HANG)  # ms
+    made.set_default_timeout(1000 * HANG / 3)  # ms; kernels are compiled meanwhile
     return made
 
 
