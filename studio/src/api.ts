@@ -60,7 +60,7 @@ export const result = (key: string) => read<Result>(`${at(key)}/state`);
 export const surface = (key: string, step: number | null, drops: number) =>
   read<SurfaceRead>(`${at(key)}/surface?drops=${drops}${step === null ? "" : `&step=${step}`}`);
 
-/** The token of the read-only link of a session, which is made if there is none. */
+/** The token of the read-only link of a session; a session without a link gets one. */
 export const link = async (key: string) =>
   ((await (await ask(`${at(key)}/guest`, { method: "PUT" })).json()) as { token: string }).token;
 /** Whether a session has such a link. */

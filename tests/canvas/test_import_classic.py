@@ -5,7 +5,7 @@ Kangaroo 0.099 publishes no formulas; these are the laws that docs/canvas.md sta
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 from uuid import uuid5
@@ -14,24 +14,12 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
-from canvas.canvasing import let_go
 from canvas.kangaroo_samples import CLASSIC, PHYSICS, PHYSICS_OUT, SETTINGS, Kangaroo
 from canvas.test_import_forces import HOLD, MESHES
 from canvas.test_import_run import places, ran
 from hookean_canvas.kangaroo.ids import CLASSIC_LIBRARY
-from serving import Home
 
-
-@pytest.fixture(scope="module", autouse=True)
-def home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
-    """A server that components find."""
-    found = Home(tmp_path_factory.mktemp("classic"))
-    found.serve()
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("HOOKEAN_STATE", str(found.folder))
-        yield found
-        let_go()
-    found.end()
+pytestmark = pytest.mark.usefixtures("home")
 
 
 class Bench(Kangaroo):

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -11,7 +10,6 @@ from typing import Any
 import numpy as np
 import pytest
 
-from canvas.canvasing import let_go
 from canvas.kangaroo_samples import SOLVER, Kangaroo
 from canvas.test_import_run import ran
 from hookean_canvas.archive.parts import parts
@@ -19,22 +17,11 @@ from hookean_canvas.kangaroo import translate as kangaroo
 from hookean_canvas.kangaroo.engineering import ENGINEERING, REASONS
 from hookean_canvas.kangaroo.ids import COMPONENTS, key
 from hookean_canvas.kangaroo.table import markdown
-from serving import Home
+
+pytestmark = pytest.mark.usefixtures("home")
 
 NAMED = {known.name: guid for guid, known in COMPONENTS.items() if known.generation == "engineering"}
 E, G = 210000.0, 81000.0
-
-
-@pytest.fixture(scope="module", autouse=True)
-def home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
-    """A server that components find."""
-    found = Home(tmp_path_factory.mktemp("engineering"))
-    found.serve()
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("HOOKEAN_STATE", str(found.folder))
-        yield found
-        let_go()
-    found.end()
 
 
 def part(d: Kangaroo, name: str, outputs: str, typed: Any = (), **wires: Any) -> Any:

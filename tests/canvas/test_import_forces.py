@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 from uuid import UUID
@@ -11,26 +11,14 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq, fsolve
 
-from canvas.canvasing import let_go
 from canvas.kangaroo_samples import ANCHOR, SOLVER, Kangaroo
 from canvas.test_import_run import SOFT, places, ran
-from serving import Home
+
+pytestmark = pytest.mark.usefixtures("home")
 
 HOLD = 100.0
 """Strength of the soft anchors [N/m]."""
 OLD_ANCHOR, OLD_SOLVER = UUID("b476d3d0-4daf-489c-b91a-49f5dd72a256"), UUID("a54d250e-e285-4f38-9fb3-8dd9c886c659")
-
-
-@pytest.fixture(scope="module", autouse=True)
-def home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
-    """A server that components find."""
-    found = Home(tmp_path_factory.mktemp("forces"))
-    found.serve()
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("HOOKEAN_STATE", str(found.folder))
-        yield found
-        let_go()
-    found.end()
 
 
 class Bench(Kangaroo):

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 from uuid import UUID
 
 import pytest
 
-from canvas.canvasing import let_go
 from canvas.kangaroo_samples import LENGTH, Kangaroo
 from hookean_canvas.archive import Chunk
 from hookean_canvas.kangaroo import translate as kangaroo
@@ -23,18 +21,6 @@ BOUNCY = (
     ("GoalObjects", None), ("Reset", False), ("Threshold", 1e-15), ("Tolerance", 0.01), ("Damping", 0.99),
     ("Iterations", 10), ("On", True),
 )  # fmt: skip
-
-
-@pytest.fixture(scope="module")
-def home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
-    """A server that components find."""
-    found = Home(tmp_path_factory.mktemp("held"))
-    found.serve()
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("HOOKEAN_STATE", str(found.folder))
-        yield found
-        let_go()
-    found.end()
 
 
 def named(root: Chunk) -> list[str]:

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from canvas.canvasing import let_go
 from canvas.kangaroo_random import GOALS, SOLVERS, Drawn, Varied
 from canvas.kangaroo_samples import wires
 from hookean_canvas.archive import write
@@ -26,18 +24,6 @@ LOOSE = {"Direction", "Angle"}
 """Goals of the same two lines, whose lengths neither holds: together they may draw a line to a point."""
 LOST = {"Strength > Floor.Strength"}
 """What a translation cannot keep of these definitions: the strength of a floor, which is hard here."""
-
-
-@pytest.fixture(scope="module")
-def home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
-    """A server that components find."""
-    found = Home(tmp_path_factory.mktemp("random"))
-    found.serve()
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("HOOKEAN_STATE", str(found.folder))
-        yield found
-        let_go()
-    found.end()
 
 
 def translated_whole(seed: int, kind: type[Drawn] = Drawn) -> None:

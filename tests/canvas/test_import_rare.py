@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 from uuid import UUID
@@ -10,7 +9,6 @@ from uuid import UUID
 import numpy as np
 import pytest
 
-from canvas.canvasing import let_go
 from canvas.kangaroo_samples import Kangaroo
 from canvas.test_import_run import SOFT, places, ran
 from canvas.test_stored import internalised
@@ -20,24 +18,14 @@ from hookean_canvas.kangaroo import translate as kangaroo
 from hookean_canvas.run import graph
 from hookean_canvas.run.evaluate import Canvas
 from hookean_canvas.run.rhino import rhino3dm
-from serving import HANG, Home
+from serving import HANG
+
+pytestmark = pytest.mark.usefixtures("home")
 
 BOUNCY = (
     ("GoalObjects", None), ("Reset", False), ("Threshold", 1e-15), ("Tolerance", 0.01), ("Damping", 0.99),
     ("Iterations", 10), ("On", True),
 )  # fmt: skip
-
-
-@pytest.fixture(scope="module", autouse=True)
-def home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
-    """A server that components find."""
-    found = Home(tmp_path_factory.mktemp("rare"))
-    found.serve()
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("HOOKEAN_STATE", str(found.folder))
-        yield found
-        let_go()
-    found.end()
 
 
 def pixels(places: Any, values: Any) -> tuple[Any, Any]:

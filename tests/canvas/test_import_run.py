@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -11,29 +10,18 @@ from uuid import UUID
 import numpy as np
 import pytest
 
-from canvas.canvasing import let_go
 from canvas.kangaroo_samples import ANCHOR, LENGTH, SOLVER, Kangaroo, cable, star, tent
 from hookean import Scene, relax
 from hookean_canvas.archive import Type
 from hookean_canvas.kangaroo import translate as kangaroo
 from hookean_canvas.run import graph
 from hookean_canvas.run.evaluate import Canvas, Outcome
-from serving import HANG, Home
+from serving import HANG
+
+pytestmark = pytest.mark.usefixtures("home")
 
 SOFT = UUID("3c30b1a1-4473-4ad4-a700-ea9770726c03")
 """The Anchor with a target."""
-
-
-@pytest.fixture(scope="module", autouse=True)
-def home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
-    """A server that components find."""
-    found = Home(tmp_path_factory.mktemp("import"))
-    found.serve()
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("HOOKEAN_STATE", str(found.folder))
-        yield found
-        let_go()
-    found.end()
 
 
 def ran(d: Kangaroo, tmp_path: Path) -> Outcome:

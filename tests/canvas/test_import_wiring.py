@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 from uuid import UUID
@@ -11,7 +10,6 @@ from uuid import UUID
 import numpy as np
 import pytest
 
-from canvas.canvasing import let_go
 from canvas.kangaroo_samples import ANCHOR, LENGTH, SOLVER, Kangaroo, wires
 from canvas.test_import_run import SOFT, places, ran
 from hookean.errors import InputError
@@ -21,22 +19,11 @@ from hookean_canvas.archive.parts import parts
 from hookean_canvas.kangaroo import translate as kangaroo
 from hookean_canvas.run import graph
 from hookean_canvas.run.evaluate import Canvas
-from serving import Home
+
+pytestmark = pytest.mark.usefixtures("home")
 
 INDEXED = UUID("b476d3d0-4daf-489c-b91a-49f5dd72a256")
 ZOMBIE = (("GoalObjects", None), ("Threshold", 1e-10), ("Tolerance", 0.01), ("MaxIterations", 50000))
-
-
-@pytest.fixture(scope="module", autouse=True)
-def home(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Home]:
-    """A server that components find."""
-    found = Home(tmp_path_factory.mktemp("wiring"))
-    found.serve()
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("HOOKEAN_STATE", str(found.folder))
-        yield found
-        let_go()
-    found.end()
 
 
 def hung(d: Kangaroo, strength: float = 100.0, **typed: Any) -> tuple[list[Any], Any]:

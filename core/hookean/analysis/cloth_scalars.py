@@ -15,7 +15,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class ClothScalars:
-    """Numbers (n,) at particles, by the triangles of `membrane` forces that meet there; nan where there are none.
+    """Numbers (n,) at particles, by the triangles of `membrane` forces that meet there; nan at particles without cloth.
 
     `stress` [force/length]: the largest principal stress per width; `state`: of the loosest triangle, 2 taut,
     1 wrinkled, 0 slack; `utilisation` [-]: the largest, nan also where no strength is known.

@@ -29,8 +29,6 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 NO_SHIFT = 1e-9  # part of the stiffness; a smaller shift is tried after none at all
-MANY = 6_000  # unknowns from which on factors take so much longer than a step that one may serve for several
-NEAR = 1e-5  # of the model's size: after a step that moves less, the tangent is nearly what it was
 MANY = 6_000  # unknowns from which on factors take so much longer than a step that they serve for several
 NEAR = 1e-3  # of the model's size: after a step that moves less, the tangent is nearly what it was
 ROUNDING = 1e-14  # part of the energies that their sum may be off by, and of the model's size

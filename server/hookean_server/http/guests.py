@@ -48,14 +48,14 @@ class Guests:
         self._guests: dict[str, Guest] = {}  # by the hash of the token
 
     def link(self, session: Shared) -> str:
-        """The token of a session's link, which is made if there is none."""
+        """The token of a session's link; a session without a link gets one."""
         if not (token := self.token(session)):
             token = secrets.token_urlsafe(32)
             self._guests[_hash(token)] = Guest(session=session, token=token)
         return token
 
     def token(self, session: Shared) -> str:
-        """The token of a session's link; "" if there is none."""
+        """The token of a session's link; "" for a session without a link."""
         self._forget()
         return next((guest.token for guest in self._guests.values() if guest.session is session), "")
 

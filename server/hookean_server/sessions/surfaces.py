@@ -26,8 +26,9 @@ async def surface(
     ] = None,
     drops: Annotated[int, Query(ge=0, le=10_000, description="How many drops of water fall, at most")] = 0,
 ) -> Response:
-    """Displacement from the start, slope and curvature at each particle, lines of equal height, and the ways of drops
-    of water, as `hookean.surface` returns them; null where a number is undefined."""
+    """Displacement from the start, slope and curvature at each particle, stress, state and utilisation of cloth, lines
+    of equal height, and the ways of drops of water, as `hookean.surface` returns them; null where a number is
+    undefined."""
     live = manager(request).find(key)
     options: dict[str, Any] = {"step": step, "drops": drops}
     head, data = await manager(request).export(live, "surface", "list", options)

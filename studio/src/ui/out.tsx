@@ -4,6 +4,7 @@ import * as api from "../api";
 import { glb, stl } from "../shapes";
 import { form } from "../view/form";
 import type { View } from "../view/types";
+import { Copied } from "./copied";
 import { barOf, picture, sizeOf, svg } from "./drawing";
 import { refuse } from "./notices";
 import { linkTo, met } from "./place";
@@ -185,18 +186,7 @@ export function OutPanel({ studio, title }: { studio: Studio; title: string }) {
           </button>
         )}
       </div>
-      <p role="status" class="done">
-        {done.value}
-      </p>
-      {link.value && (
-        <input
-          type="text"
-          readOnly
-          aria-label="Link to this session"
-          value={link.value}
-          ref={(field) => field?.select()}
-        />
-      )}
+      <Copied told={done.value} address={link.value} name="Link to this session" />
       {!session.readOnly && <Share studio={studio} />}
     </>
   );

@@ -3,6 +3,7 @@ import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import * as api from "../api";
 import type { Kept } from "../view/types";
+import { Copied } from "./copied";
 import { fitting } from "./kept";
 import { refuse } from "./notices";
 import { linkTo, met } from "./place";
@@ -79,18 +80,7 @@ export function Share({ studio }: { studio: Studio }) {
           </button>
         )}
       </div>
-      <p role="status" class="done">
-        {done.value}
-      </p>
-      {address.value && (
-        <input
-          type="text"
-          readOnly
-          aria-label="Read-only link"
-          value={address.value}
-          ref={(field) => field?.select()}
-        />
-      )}
+      <Copied told={done.value} address={address.value} name="Read-only link" />
     </div>
   );
 }

@@ -59,7 +59,7 @@ class Quantity(Model):
 
 
 def measured(quantity: Quantity, found: Equilibrium, pointer: str) -> Floats:
-    """The values (k,) of a quantity; InputError where there are none."""
+    """The values (k,) of a quantity; InputError if it has no values."""
     values = quantity.values(found, pointer)
     if not len(values):
         raise InputError(pointer, NOTHING.format(kind=quantity.kind_name))
