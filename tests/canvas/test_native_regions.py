@@ -43,6 +43,8 @@ def areas(name: str, *given: Any) -> list[float]:
         ("Region Union", ([box(0, 0, 1, 1), box(2, 0, 1, 1)],), [1.0, 1.0]),
         ("Region Union", ([box(0, 0, 1, 1), box(1, 1, 1, 1)],), [1.0, 1.0]),
         ("Region Union", ([box(0, 0, 2, 2), box(0, 0, 2, 2)],), [4.0]),
+        ("Region Union", ([box(0, 0, 2, 2), box(5, 5, 0, 0)],), [4.0]),
+        ("Region Union", ([box(5, 5, 0, 0)],), []),
         ("Region Difference", ([box(0, 0, 3, 3)], [box(1, 1, 1, 1)]), [-1.0, 9.0]),
         ("Region Difference", ([box(0, 0, 3, 3)], [box(1, -1, 1, 5)]), [3.0, 3.0]),
         ("Region Difference", ([box(0, 0, 2, 2)], [box(0, 0, 2, 2)]), []),

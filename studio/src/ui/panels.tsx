@@ -96,7 +96,7 @@ const INSIDE: Record<string, string> = {
   Forces: "The forces of the model with their values, and new ones; the solver",
   See: "Colours, layers, labels and the section plane",
   "Load cases": "The form under each case and combination of loads",
-  Surface: "Heights, slopes, curvature and the ways of water",
+  Surface: "Slope, curvature, stress of cloth, height lines and the ways of water",
   Charts: "Residual, energy and what is picked, over the last minute",
   Time: "Recordings, bookmarks and videos",
   Tables: "Springs, particles and reactions in numbers",

@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial import ConvexHull, KDTree, QhullError
 
 from hookean_canvas.run.natives import shapes
@@ -44,7 +46,8 @@ def region_intersection(first: list[Any], second: list[Any], frame: Any) -> list
 
 def _combined(groups: list[list[Any]], frame: Any, rule: Callable[[list[Flags]], Flags]) -> list[Any]:
     """The outlines of the places that a rule accepts by whether they are within each group of closed curves."""
-    sides = [[_pieces(curve) for curve in group if curve is not None] for group in groups]
+    given = [[_pieces(curve) for curve in group if curve is not None] for group in groups]
+    sides = [[rows for rows in group if np.ptp(rows, axis=0).any()] for group in given]  # a point encloses nothing
     every = [rows for group in sides for rows in group]
     if not every:
         return []
@@ -87,9 +90,6 @@ def _arranged(rings: list[Array]) -> tuple[Array, NDArray[np.intp]]:
         rows += [a + np.array(pair)[:, None] * way for pair in pairwise(np.unique(cuts).tolist())]
     ends = np.concatenate(rows)
     pairs = KDTree(ends).query_pairs(2.0 * near, output_type="ndarray")
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
     links = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(len(ends), len(ends)))
     count, which = connected_components(links, directed=False)
     first = np.full(count, len(ends))
@@ -150,6 +150,8 @@ def _turn(way: Array, following: Array) -> float:
 def voronoi_in_space(places: list[Any], box: Any) -> tuple[list[Any], list[bool]]:
     """For each point the part of a box that is nearer to it than to others, and whether it reaches the box."""
     rows = shapes.rows(places)
+    if not len(rows):
+        return [], []
     bounded(len(rows) ** 2)
     if box is not None:
         low, high = shapes.xyz(box.Min), shapes.xyz(box.Max)
