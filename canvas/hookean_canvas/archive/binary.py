@@ -49,6 +49,8 @@ TUPLES = {
 }
 _INT32 = SCALARS[Type.INT32]
 _DECIMAL = struct.Struct("<IIII")  # low, middle and high word, then sign and scale
+_TWO = struct.Struct("<2i")
+_READ = {int(type): (type, SCALARS.get(type) or TUPLES.get(type)) for type in Type}
 _LEAST_ITEM, _LEAST_CHUNK = 10, 13  # bytes
 
 
@@ -183,111 +185,124 @@ def _short(value: Any) -> str:
 def of_plain(plain: bytes, name: str = "archive") -> Chunk:
     """The chunk in unpacked bytes; raises InputError with the place of damage."""
     reader = _Reader(plain, name)
-    chunk = reader.chunk(())
+    chunk = reader.chunk()
     if reader.position < len(plain):
         raise InputError(name, f"is damaged: {len(plain) - reader.position} bytes follow the last chunk.")
     return chunk
 
 
 class _Reader:
-    """A place in the unpacked bytes."""
+    """A place in the unpacked bytes, and what it is in."""
 
     def __init__(self, data: bytes, name: str) -> None:
         self.data = data
         self.name = name
         self.position = 0
         self.parts = 0
+        self.within: list[tuple[str, int]] = []  # names and indices of chunks, made labels only where something is wrong
 
-    def chunk(self, place: tuple[str, ...]) -> Chunk:
-        name, index = self._string(place), self._int(place)
-        place = (*place, labelled(name, index))
-        if len(place) > DEEPEST:
-            raise self._damage(place[:3], f"chunks are nested more than {DEEPEST} deep")
-        items, chunks = self._int(place), self._int(place)
+    def chunk(self) -> Chunk:
+        name, index = self._string(), self._int()
+        self.within.append((name, index))
+        if len(self.within) > DEEPEST:
+            del self.within[3:]
+            raise self._damage(f"chunks are nested more than {DEEPEST} deep")
+        items, chunks = self._int(), self._int()
         room = len(self.data) - self.position
         if items < 0 or chunks < 0 or items * _LEAST_ITEM + chunks * _LEAST_CHUNK > room:
-            raise self._damage(place, f"{items} items and {chunks} chunks are announced, {room} bytes are left")
+            raise self._damage(f"{items} items and {chunks} chunks are announced, {room} bytes are left")
         self.parts += items + chunks
         if self.parts > MOST_PARTS:
             raise InputError(self.name, f"holds more than {MOST_PARTS} items and chunks; internalise less geometry.")
         chunk = Chunk(name, index)
-        chunk.items = [self._item(place) for _ in range(items)]
+        chunk.items = [self._item() for _ in range(items)]
         again = twin(chunk.items)
         if again is not None:
-            raise self._damage((*place, labelled(again.name, again.index)), "the item occurs twice in its chunk")
-        chunk.chunks = [self.chunk(place) for _ in range(chunks)]
+            self.within.append((again.name, again.index))
+            raise self._damage("the item occurs twice in its chunk")
+        chunk.chunks = [self.chunk() for _ in range(chunks)]
+        self.within.pop()
         return chunk
 
-    def _item(self, place: tuple[str, ...]) -> Item:
-        name, index, code = self._string(place), self._int(place), self._int(place)
-        here = (*place, labelled(name, index))
-        try:
-            type = Type(code)
-        except ValueError:
-            raise self._damage(here, f"type code {code} is unknown to GH_IO") from None
-        return Item(name, index, type, self._value(type, here))
+    def _item(self) -> Item:
+        name = self._string()
+        index, code = _TWO.unpack(self._take(8))
+        self.within.append((name, index))
+        found = _READ.get(code)
+        if found is None:
+            raise self._damage(f"type code {code} is unknown to GH_IO")
+        type, layout = found
+        if layout is None:
+            value = self._value(type)
+        else:
+            value = layout.unpack(self._take(layout.size))
+            value = value[0] if type in SCALARS else value
+        self.within.pop()
+        return Item(name, index, type, value)
 
-    def _value(self, type: Type, place: tuple[str, ...]) -> Any:
-        if type in SCALARS:
-            return SCALARS[type].unpack(self._take(SCALARS[type].size, place))[0]
-        if type in TUPLES:
-            return TUPLES[type].unpack(self._take(TUPLES[type].size, place))
+    def _value(self, type: Type) -> Any:
         match type:
             case Type.STRING:
-                return self._string(place)
+                return self._string()
             case Type.BOOL:
-                return self._bool(place)
+                return self._bool()
             case Type.GUID:
-                return uuid.UUID(bytes_le=self._take(16, place))
+                return uuid.UUID(bytes_le=self._take(16))
             case Type.BYTEARRAY | Type.DRAWING_BITMAP:
-                return self._take(self._int(place), place)
+                return self._take(self._int())
             case Type.DOUBLEARRAY:
-                count = self._int(place)
-                return struct.unpack(f"<{max(count, 0)}d", self._take(8 * count, place))
+                count = self._int()
+                return struct.unpack(f"<{max(count, 0)}d", self._take(8 * count))
             case Type.DRAWING_COLOR:
-                return tuple(reversed(self._take(4, place)))
-        return self._decimal(place)
+                return tuple(reversed(self._take(4)))
+        return self._decimal()
 
-    def _bool(self, place: tuple[str, ...]) -> bool:
-        byte = self._take(1, place)[0]
+    def _bool(self) -> bool:
+        byte = self._take(1)[0]
         if byte > 1:
-            raise self._damage(place, f"a truth value is stored as {byte}, where 0 and 1 are allowed")
+            raise self._damage(f"a truth value is stored as {byte}, where 0 and 1 are allowed")
         return byte == 1
 
-    def _decimal(self, place: tuple[str, ...]) -> Decimal:
-        low, middle, high, flags = _DECIMAL.unpack(self._take(16, place))
+    def _decimal(self) -> Decimal:
+        low, middle, high, flags = _DECIMAL.unpack(self._take(16))
         scale = flags >> 16 & 0xFF
         if flags & 0x7F00FFFF or scale > 28:
-            raise self._damage(place, f"a decimal number has the flags {flags:#x}")
+            raise self._damage(f"a decimal number has the flags {flags:#x}")
         digits = tuple(map(int, str(low | middle << 32 | high << 64)))
         return Decimal((flags >> 31, digits, -scale))
 
-    def _string(self, place: tuple[str, ...]) -> str:
+    def _string(self) -> str:
+        start = self.position + 1
+        if start <= len(self.data) and (length := self.data[start - 1]) < 128 and start + length <= len(self.data):
+            self.position = start + length  # as nearly all are
+            return self._decoded(self.data[start : self.position])
         length = shift = 0
         while True:
-            byte = self._take(1, place)[0]
+            byte = self._take(1)[0]
             length |= (byte & 127) << shift
             shift += 7
             if byte < 128:
                 break
             if shift > 28:
-                raise self._damage(place, "a text's length has no end")
+                raise self._damage("a text's length has no end")
+        return self._decoded(self._take(length))
+
+    def _decoded(self, text: bytes) -> str:
         try:
-            return self._take(length, place).decode()
+            return text.decode()
         except UnicodeDecodeError:
-            raise self._damage(place, "a text is not UTF-8") from None
+            raise self._damage("a text is not UTF-8") from None
 
-    def _int(self, place: tuple[str, ...]) -> int:
-        return int(_INT32.unpack(self._take(4, place))[0])
+    def _int(self) -> int:
+        return int(_INT32.unpack(self._take(4))[0])
 
-    def _take(self, count: int, place: tuple[str, ...]) -> bytes:
+    def _take(self, count: int) -> bytes:
         end = self.position + count
         if count < 0 or end > len(self.data):
-            raise self._damage(place, f"{count} bytes are expected, {len(self.data) - self.position} are left")
+            raise self._damage(f"{count} bytes are expected, {len(self.data) - self.position} are left")
         self.position, start = end, self.position
         return self.data[start:end]
 
-    def _damage(self, place: tuple[str, ...], what: str) -> InputError:
-        return InputError(
-            self.name, f"is damaged at {placed(place)}, byte {self.position}: {what}; save or copy it again."
-        )
+    def _damage(self, what: str) -> InputError:
+        place = placed(tuple(labelled(name, index) for name, index in self.within))
+        return InputError(self.name, f"is damaged at {place}, byte {self.position}: {what}; save or copy it again.")
