@@ -93,10 +93,9 @@ lint: .venv/test
 	@$(INSTALL) $(if $(WITH),--no-compile) -e '.$(WITH)'
 	@touch $@
 
-# all at once, for each installation builds the page and compares versions; then compiled by all processors, not by one
+# all at once, for each installation builds the page and compares versions; what of it is used is compiled at its import
 .venv/test: pyproject.toml hatch_build.py $(STUDIO)
 	@$(MAKE) --no-print-directory -B .venv/run WITH='[test]'
-	@$(BIN)/python -m compileall -q -j 0 .venv/lib >/dev/null 2>&1 || true # packages have files of other versions
 	@touch $@
 
 .venv/site: .venv/run

@@ -25,7 +25,13 @@ from soak import sampled
 ALL = examples()
 
 
-@pytest.mark.parametrize("example", ALL, ids=lambda e: e.name)
+LONG = {"miura", "sphere", "9.32-ribbon", "planar_quads", "bending_gridshell", "rigid_boxes", "9.28-rest-factor-zero"}
+"""Examples of more than a second."""
+
+
+@pytest.mark.parametrize(
+    "example", [pytest.param(e, id=e.name, marks=[pytest.mark.soak] if e.name in LONG else []) for e in ALL]
+)
 def test_a_fresh_run_gives_the_expected_numbers(example: Example) -> None:
     numbers = example.run().numbers
     assert set(numbers) == set(example.expected.numbers)
@@ -71,7 +77,7 @@ def without() -> Iterator[Callable[[Path], dict[str, float]]]:
         yield printed
 
 
-@pytest.mark.parametrize("example", sampled(ALL, 6), ids=lambda e: e.name)
+@pytest.mark.parametrize("example", sampled(ALL, 12), ids=lambda e: e.name)
 def test_numbers_of_scripts_are_what_the_scripts_print_without_hookean(
     example: Example, without: Callable[[Path], dict[str, float]]
 ) -> None:
@@ -83,7 +89,7 @@ def test_numbers_of_scripts_are_what_the_scripts_print_without_hookean(
             assert expected.holds(printed[name]), (name, printed[name], str(expected))
 
 
-@pytest.mark.parametrize("example", ALL, ids=lambda e: e.name)
+@pytest.mark.parametrize("example", sampled(ALL, 4), ids=lambda e: e.name)
 def test_a_folder_has_all_that_the_gallery_shows(example: Example) -> None:
     inside = {path.name for path in example.folder.iterdir()}
     assert {"scene.py", "example.py", "expected.json", "README.md", "picture.png"} <= inside
@@ -120,6 +126,9 @@ DRAWN: dict[str, tuple[str, dict[str, Any]]] = {
 }
 
 
+RECIPES = [f"{path.parent.name}/{path.stem}" for path in sorted(home().glob("*/recipe*.toml"))]
+
+
 def disturbed(scene: Scene) -> tuple[np.ndarray, ...]:
     """Where the particles of a scene are, from their least coordinates; mass, what is held, and the forces of their
     elements in a motion that is a smooth function of the place."""
@@ -131,7 +140,7 @@ def disturbed(scene: Scene) -> tuple[np.ndarray, ...]:
     return place, system.mass, state.free, system.evaluate(state, still=False)[0]
 
 
-@pytest.mark.parametrize("recipe", [f"{p.parent.name}/{p.stem}" for p in sorted(home().glob("*/recipe*.toml"))])
+@pytest.mark.parametrize("recipe", sampled(RECIPES, 3))
 def test_model_and_recipe_are_the_scene_that_scene_py_makes(recipe: str) -> None:
     """The same particles, supports and forces while they move, and settings that solve alike.
 

@@ -61,6 +61,7 @@ def wheel(sdist: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return build(sdist, "wheel", tmp_path_factory.mktemp("wheel"), TZ="UTC", **nothing)
 
 
+@pytest.mark.soak
 def test_an_sdist_carries_the_page_and_its_sources(sdist: Path):
     names = {path.relative_to(sdist).as_posix() for path in sdist.rglob("*") if path.is_file()}
     assert {"hatch_build.py", "studio/package-lock.json", "studio/src/main.tsx", "studio/.npmrc"} <= names
@@ -70,6 +71,7 @@ def test_an_sdist_carries_the_page_and_its_sources(sdist: Path):
     assert not [name for name in names if "node_modules" in name or name.endswith(".map")]
 
 
+@pytest.mark.soak
 def test_a_wheel_of_the_sdist_needs_no_node(sdist: Path, wheel: Path):
     """Its page and documentation are those of the sdist, byte for byte."""
     with zipfile.ZipFile(wheel) as archive:
@@ -84,6 +86,7 @@ def test_a_wheel_of_the_sdist_needs_no_node(sdist: Path, wheel: Path):
     assert not [name for name in held if "node_modules" in name or name.startswith("studio")]
 
 
+@pytest.mark.soak
 def test_packages_are_accepted_by_an_index_and_build_the_same_bytes_twice(
     packed: Path, sdist: Path, wheel: Path, tmp_path: Path
 ):
@@ -99,6 +102,7 @@ def test_packages_are_accepted_by_an_index_and_build_the_same_bytes_twice(
     assert done.returncode == 0, done.stdout + done.stderr
 
 
+@pytest.mark.soak
 def test_the_description_of_a_package_points_to_nothing_beside_it(sdist: Path):
     """Links and pictures of the README are addresses: an index has no docs/ and no gh_examples/."""
     text = email.message_from_string((sdist / "PKG-INFO").read_text(encoding="utf-8"))
@@ -110,6 +114,7 @@ def test_the_description_of_a_package_points_to_nothing_beside_it(sdist: Path):
     assert {"Homepage", "Documentation", "Changelog", "Issues"} <= set(urls)
 
 
+@pytest.mark.soak
 def test_the_documentation_is_built_where_its_sources_changed(sdist: Path):
     """A page, a docstring or a picture; an editable install, which is what `make run` makes, never asks."""
     ask = "from hatch_build import *; print(site_is_built())"
@@ -137,6 +142,7 @@ def test_every_dependency_states_its_lowest_version():
     assert len(floors.floors()) >= 16 and all(re.fullmatch(r"[\w-]+==\d[\d.]*", one) for one in floors.floors())
 
 
+@pytest.mark.soak
 def test_the_page_is_built_where_its_sources_changed(sdist: Path):
     """Node is asked for then, and only then; times, which archives do not keep, do not matter."""
     ask = "from hatch_build import *; print(PageHook.dependencies(None))"
@@ -155,6 +161,7 @@ def test_the_page_is_built_where_its_sources_changed(sdist: Path):
     main.write_bytes(written)
 
 
+@pytest.mark.soak
 def test_a_page_that_cannot_be_built_says_why_in_a_sentence(sdist: Path, tmp_path: Path):
     """Without Node, and with Node where no registry answers."""
     stale = "import hatch_build as h; h.BUILT_FROM = h.ROOT / 'none';"

@@ -89,6 +89,7 @@ def blocks(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.mark.soak
 def test_mypy_without_plugins_accepts_the_docs_and_finds_mistakes(blocks: Path) -> None:
     """mypy --strict: no word on the pages and on the claims but on the lines that are wrong, each for its reason."""
     assert len(list(blocks.glob("page_*.py"))) >= 16

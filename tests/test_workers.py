@@ -42,7 +42,7 @@ def pytest_collection_finish(session):
 }
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_a_worker_that_dies_near_the_end_does_not_stop_the_run(tmp_path: Path) -> None:
     """One worker dies with two units of one test each. The one that replaces it ends them, with no more to come."""
     for name, text in TESTS.items():

@@ -23,10 +23,11 @@ from hookean_canvas.command import app
 from hookean_canvas.components import build, bundles, inline, userobject, yak
 from hookean_canvas.inspect import lint
 from serving import HANG
+from soak import sampled
 
 ROOT = Path(__file__).parents[2]
 BUNDLES = {bundle.folder: bundle for bundle in bundles.read_all()}
-every_bundle = pytest.mark.parametrize("name", list(BUNDLES))
+every_bundle = pytest.mark.parametrize("name", sampled(BUNDLES, 4))
 
 
 @pytest.fixture(scope="module")
@@ -48,6 +49,7 @@ def shape(chunk: Chunk) -> dict[str, str]:
     return {item.name: item.type.name for item in chunk.items}
 
 
+@pytest.mark.soak
 def test_building_some_again_gives_the_same_bytes(dist, tmp_path):
     """User objects from another process: no date, no chance, no order of files or hashed strings."""
     told = (

@@ -23,6 +23,7 @@ from hookean_canvas.run.checking import check
 from hookean_canvas.run.graph import Node
 from hookean_canvas.run.scripts import SCRIPTS, code_of
 from serving import SOAK, Home
+from soak import sampled
 
 FIGURES = sorted(example.name for example in examples())
 HERE = Path(__file__).parents[2] / "gh_examples"
@@ -51,7 +52,7 @@ def test_every_figure_has_a_definition() -> None:
     assert [figure for figure in FIGURES if not shipped(figure).is_file()] == []
 
 
-@pytest.mark.parametrize("figure", FIGURES)
+@pytest.mark.parametrize("figure", sampled(FIGURES, 4))
 def test_a_shipped_definition_is_what_its_module_writes_now(figure: str, tmp_path: Path) -> None:
     spec = importlib.util.spec_from_file_location("build_definitions", HERE / "build_definitions.py")
     assert spec is not None and spec.loader is not None
@@ -68,7 +69,7 @@ def test_shipped_definitions_carry_the_present_client() -> None:
     assert old == [], "run `.venv/bin/python gh_examples/build_definitions.py`"
 
 
-@pytest.mark.parametrize("figure", FIGURES)
+@pytest.mark.parametrize("figure", sampled(FIGURES, 4))
 def test_a_shipped_definition_has_no_faults_and_stands_as_a_person_lays_it_out(figure: str) -> None:
     assert lint.faults(archive.read(shipped(figure))) == []
     found = graph.read(shipped(figure))

@@ -246,7 +246,8 @@ quad = [rg.Point3d(*p) for p in quad[:2] + quad[3:]]
 
 def test_goals_of_meshes_keep_their_laws(tmp_path: Path) -> None:
     """Volume of an octahedron by its published law, 2 S (V0 - V) / A on the area vectors of the faces round a tip, the
-    area that of the start here: within 3 % of the way. TangentialSmooth: half of the strength. Developablize: a cone becomes flat."""
+    area that of the start here: within 3 % of the way. TangentialSmooth: half of the strength. Developablize: a cone
+    becomes flat."""
     d = Bench("meshes")
     made = d.script("Meshes", MESHES, {}, ["solid", "tips", "flat", "cone", "held"])
     target = 4 / 3 * 1.05**3

@@ -21,6 +21,7 @@ from hookean_canvas.command import app
 from hookean_canvas.definitions.write import Definition
 from hookean_canvas.run import graph, trust
 from serving import HANG
+from soak import sampled
 
 SHIPPED = sorted(home().glob("*/definition.gh"))
 
@@ -105,7 +106,7 @@ def test_a_definition_without_scripts_needs_no_trust(person: Person) -> None:
     assert (done.exit_code, done.stdout, done.stderr) == (0, "length: 2\n", "")
 
 
-@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.parent.name)
+@pytest.mark.parametrize("path", sampled(SHIPPED, 8), ids=lambda path: path.parent.name)
 def test_what_is_shipped_is_trusted_by_its_digest(
     path: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -193,6 +194,7 @@ def test_files_that_are_trusted_at_once_are_all_remembered(person: Person, monke
     assert stat.S_IMODE(person.remembered.stat().st_mode) == 0o600
 
 
+@pytest.mark.soak
 def test_commands_that_run_nothing_need_no_trust(person: Person) -> None:
     file = person.definition()
     for words in (["show", str(file)], ["check", str(file)], ["draw", str(file), "-o", str(person.folder / "x.png")]):

@@ -20,7 +20,7 @@ from .test_cache import probe
 SOLVERS = ("verlet", "yoshida", "relaxation", "momentum")
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_fresh_processes_and_thread_counts_give_the_same_bits() -> None:
     """SHA-256 of shapes after relaxing, momentum steps and 200 Verlet steps: here, there, with 1 or 2 threads."""
     here = hashes()

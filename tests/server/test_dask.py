@@ -107,6 +107,7 @@ def rows_bytes(client: httpx.Client, address: str) -> bytes:
     return client.get(f"{address}/results").content.partition(b'"rows": ')[2]
 
 
+@pytest.mark.soak
 def test_a_killed_worker_loses_nothing(dask: Dask, jobs: httpx.Client) -> None:
     request = sweep(100, 100) if SOAK else sweep(20, 10)
     count = product(request)

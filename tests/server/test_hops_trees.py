@@ -26,7 +26,7 @@ from .hops_canvas import Component, goo, listed, sent
 from .hops_inside import Service, functions
 from .hops_recording import OURS
 
-TREES = 600 if SOAK else 60
+TREES = 600 if SOAK else 24
 LASTING = {"ribbon", "hypar_net", "chains_between_frames", "bridge_skin", "falling_sphere"}
 
 

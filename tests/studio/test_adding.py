@@ -64,6 +64,7 @@ def test_loads_and_self_weight_are_added_to_any_scene(tab: Studio, scene: str):
     tab.until(lambda: len(forces(tab)) == len(before))
 
 
+@pytest.mark.soak
 def test_kinds_for_meshes_lines_and_rows_of_particles(tab: Studio):
     """Pressure acts on the mesh, springs join what is numbered, a surface has rows of points, a floor
     no place; and a wrong number of particles is a sentence."""

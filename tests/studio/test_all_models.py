@@ -70,7 +70,8 @@ def test_a_figure_is_used_in_the_page(studio: Studio, name: str) -> None:
     used(studio)
 
 
-@pytest.mark.parametrize("form", sampled(FORMATS, len(FORMATS)))
+@pytest.mark.soak
+@pytest.mark.parametrize("form", FORMATS)
 def test_a_format_is_used_in_the_page(studio: Studio, form: str) -> None:
     """The membrane as a file of the format."""
     service = studio.service

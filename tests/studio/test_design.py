@@ -143,7 +143,7 @@ def test_conflicts_bounds_and_constraints_are_reported_in_words(cable: Studio):
     assert number(best, "cable rest factor") == pytest.approx(truth.variables[0]["value"], rel=PRINTED)
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_a_problem_is_saved_with_the_model_and_opened_again(cable: Studio, tmp_path: Path):
     """The file has it; a browser that kept nothing shows it with the model of the file."""
     page = cable.page

@@ -81,6 +81,7 @@ def test_every_page_fits_and_loads_only_its_own(reader: Any, pages: list[str], s
         shown.page.evaluate(DECODED)
 
 
+@pytest.mark.soak
 def test_the_search_finds_a_page(reader: Any, pages: list[str]) -> None:
     shown = reader()
     shown.open("/docs/tutorials/cable/")

@@ -90,6 +90,7 @@ def test_a_net_is_drawn_by_clicks_held_loaded_and_solved(studio: Studio) -> None
     assert not violations(studio)
 
 
+@pytest.mark.soak
 def test_lines_are_drawn_changed_and_undone(studio: Studio) -> None:
     """Clicks, typed coordinates, a corner on a particle and one on a midpoint; pieces, an extrusion, and what is
     deleted. The Python API makes the same scene by the same edits; each click is undone by itself."""

@@ -114,6 +114,7 @@ def test_a_frame_is_read_and_uploaded_whole(swinging: Studio, capsys: pytest.Cap
     assert not SOAK or worst <= BOUND
 
 
+@pytest.mark.soak
 def test_no_frame_older_than_an_acknowledged_edit_is_drawn(swinging: Studio):
     """An anchor dragged to and fro under full load: by the page's own count, and by where the anchor is drawn."""
     page = swinging.page

@@ -125,6 +125,7 @@ def test_a_pause_holds_though_an_edit_overtakes_its_answer(cable: Studio):
     assert not service.summary(key)["playing"]
 
 
+@pytest.mark.soak
 def test_the_same_picture_after_loading_anew(cable: Studio):
     """The page holds no state: what it shows is what the service has."""
     key = cable.key

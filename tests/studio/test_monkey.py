@@ -78,6 +78,7 @@ class Monkey:
         return bool(self.page.evaluate(FOCUS, [self.random.random(), which]))
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("scene", SCENES)
 def test_whatever_is_done_no_exception_and_no_notice_stays(tab: Studio, scene: str) -> None:
     """Refused edits are expected, by 4xx answers; exceptions in the page and answers of 5xx are not. After two Escapes

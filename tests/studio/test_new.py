@@ -46,6 +46,7 @@ def test_a_model_is_made_and_solved(studio: Studio, name: str, typed: dict[str, 
     assert np.abs(studio.service.particles(studio.key) - truth).max() < 1e-3  # of 10 m
 
 
+@pytest.mark.soak
 def test_parameters_are_changed_undone_and_refused_after_a_pin(studio: Studio):
     """The number of faces makes the model again with (n + 1)^2 particles; a pin forbids it until it is undone."""
     page, service = studio.page, studio.service

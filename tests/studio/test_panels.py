@@ -114,6 +114,7 @@ def test_a_particle_is_pinned_and_released(cable: Studio):
     cable.rests_at(equilibrium(NAMED))
 
 
+@pytest.mark.soak
 def test_a_free_particle_is_pulled_and_springs_back(cable: Studio):
     """While it is held it is where the hand is; let go, the form returns to its equilibrium."""
     page, truth = cable.page, equilibrium(NAMED)

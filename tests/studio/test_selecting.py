@@ -113,6 +113,7 @@ def test_box_lasso_invert_and_row_select_what_they_enclose(sheet: Studio) -> Non
     sheet.until(lambda: held(sheet) == [0, 1, 4, 6, 11, 16, 20, 21, 24])
 
 
+@pytest.mark.soak
 def test_a_range_of_forces_selects_and_a_group_is_kept_and_moved(sheet: Studio, tmp_path: Path) -> None:
     """No spring is stretched at the start: all have 0 N. The held ones of a group move as one edit; a .hookean file
     has the group."""

@@ -62,6 +62,7 @@ def becomes(studio: Studio) -> list[str]:
     return found
 
 
+@pytest.mark.soak
 def test_the_first_proposal_becomes_the_model(studio: Studio, roof: Path) -> None:
     """Ropes, skin and supports have their roles by the names of their layers; the house is left out."""
     tasks.chosen(studio, roof)
@@ -140,6 +141,7 @@ def test_one_object_has_a_role_of_its_own(studio: Studio, roof: Path) -> None:
     studio.until(lambda: becomes(studio)[2] == "4 held points")
 
 
+@pytest.mark.soak
 def test_it_is_done_by_keyboard_alone(studio: Studio, roof: Path) -> None:
     """The menu of a role is reached by Tab, keeps the focus when it has changed, and Enter on the button makes the
     model; Esc closes the sheet, and no session is made."""

@@ -59,6 +59,7 @@ class Weight:
         }
 
 
+@pytest.mark.soak
 def test_drags_pauses_and_reloads_leave_nothing_behind(tab: Studio, capsys: pytest.CaptureFixture[str]):
     """Memory within the bound, no nodes or listeners for each drag, one drawing context."""
     studio, page, service = tab, tab.page, tab.service

@@ -97,6 +97,7 @@ def test_a_link_needs_a_login_of_its_own(open_studio: Opened):
 # figures and sessions
 
 
+@pytest.mark.soak
 def test_every_figure_is_in_the_gallery_with_its_picture(studio: Studio):
     page = studio.page
     listed = studio.service.client.get("/v1/examples").json()["examples"]

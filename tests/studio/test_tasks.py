@@ -84,6 +84,7 @@ def test_a_roof_is_formed_loaded_with_snow_saved_and_reopened(studio: Studio, tm
     assert sums(studio)[2] == pytest.approx(0.6 * plan, rel=1e-3)  # four digits are shown
 
 
+@pytest.mark.soak
 def test_a_hanging_net_is_turned_over(studio: Studio):
     """Loads mirrored in the plane of the supports give the mirrored form with the same forces (Hooke, 1676)."""
     key = tasks.hanging(studio)
@@ -149,6 +150,7 @@ def same_film(studio: Studio, key: str, truth: Result, height: float) -> None:
     assert (found < 2.0 * errors(truth.particles, truth.forces[0]["area"], height)).all(), found
 
 
+@pytest.mark.soak
 def test_a_film_is_pulled_to_its_collapse_and_back(studio: Studio):
     """At 5 m between the rings and at 6 m the film is the catenoid of the Python API. At 8 m, beyond 1.325 radii, no
     film spans them (Goldschmidt, 1831), and the page reports the collapse. Back at 5 m it is the catenoid again."""

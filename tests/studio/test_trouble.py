@@ -26,6 +26,7 @@ def mortal(tmp_path: Path, browser: object) -> Iterator[Service]:
     found.end()
 
 
+@pytest.mark.soak
 def test_the_page_goes_on_when_the_service_was_killed(open_studio: Opened, mortal: Service):
     """kill -9: the page says that it is reconnecting; the service that is started again has another token and knows no
     cookie, so that the page asks to be let in, and is there again, on the same revision, once any page of this browser

@@ -199,7 +199,7 @@ class _Reader:
         self.name = name
         self.position = 0
         self.parts = 0
-        self.within: list[tuple[str, int]] = []  # names and indices of chunks, made labels only where something is wrong
+        self.within: list[tuple[str, int]] = []  # names and indices, labels where something is wrong
 
     def chunk(self) -> Chunk:
         name, index = self._string(), self._int()
