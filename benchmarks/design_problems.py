@@ -47,7 +47,6 @@ class Problem:
     def shape(self, q: Floats) -> tuple[Floats, Floats]:
         """Places (n, 3) and reactions (n, 3): C^T Q C x = p."""
         from scipy.sparse import csr_matrix, diags
-        from scipy.sparse.linalg import splu
 
         m, n = len(self.edges), len(self.points)
         rows = np.tile(np.arange(m), 2)
@@ -55,7 +54,7 @@ class Problem:
         k = (c.T @ diags(q) @ c).tocsc()
         x, free = self.points.copy(), self.free
         right = self.loads[free] - k[free][:, self.supports] @ x[self.supports]
-        x[free] = splu(k[free][:, free].tocsc()).solve(right)
+        x[free] = _solved(k[free][:, free].tocsc(), right)
         return x, self.loads - k @ x
 
     def values(self, q: Floats, kind: str, which: Ints) -> Floats:
@@ -181,6 +180,15 @@ def vault(m: int = 20) -> Problem:
     return Problem(
         "vault", points, edges, rim, up(len(points), rim, 0.2), start, (1e-3, 20.0), goals, "LBFGSB", 1e-9, 5000
     )
+
+
+def _solved(k: Any, right: Floats) -> Floats:
+    """K^-1 of a right side; by NumPy where that is small, since SciPy's factors take long to load."""
+    if len(right) <= 1000:
+        return np.linalg.solve(k.toarray(), right)
+    from scipy.sparse.linalg import splu
+
+    return np.asarray(splu(k).solve(right))
 
 
 def recovery(m: int) -> Problem:

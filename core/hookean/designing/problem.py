@@ -22,13 +22,14 @@ from hookean.designing.quantities import QUANTITIES
 from hookean.designing.quantities.base import Quantity
 from hookean.scene.scene import Scene
 from hookean.scene.text import parse
+from hookean.values.by_kind import ByKind
 from hookean.values.columns import Indices, Model, Reals, Table, fault
 from hookean.values.fields import Field, Maybe, Part, Parts
 
 if TYPE_CHECKING:
     AnyQuantity = Quantity
 else:
-    AnyQuantity = Annotated[Union[tuple(QUANTITIES.values())], Field(discriminator="kind")]  # noqa: UP007
+    AnyQuantity = Annotated[Union[tuple(QUANTITIES.values())], ByKind(QUANTITIES)]  # noqa: UP007
 
 Axes = Literal["x", "y", "z", "xy", "xz", "yz", "xyz"]
 PARTICLES = ("drawn", "mass")

@@ -21,6 +21,7 @@ from hookean.scene.references import materials_exist, particles_exist
 from hookean.scene.solver_names import SOLVERS
 from hookean.scene.text import parse
 from hookean.values import html
+from hookean.values.by_kind import ByKind
 from hookean.values.columns import (
     Faces,
     Indices,
@@ -40,7 +41,7 @@ from hookean.values.units import Units
 if TYPE_CHECKING:
     AnyForce = Force
 else:
-    AnyForce = Annotated[Union[tuple(KINDS.values())], Field(discriminator="kind")]  # noqa: UP007
+    AnyForce = Annotated[Union[tuple(KINDS.values())], ByKind(KINDS)]  # noqa: UP007
 
 
 class MeshData(Model):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import binascii
+import inspect
 import math
 from collections.abc import Mapping
 from itertools import chain
@@ -40,20 +41,22 @@ class Model(BaseModel, metaclass=OneError):
     called: ClassVar[str] = ""  # the name of the class in sentences: its own in small letters where it gives none
 
     model_config = ConfigDict(
-        extra="forbid", frozen=True, allow_inf_nan=False, arbitrary_types_allowed=True, validate_default=True
+        extra="forbid",
+        frozen=True,
+        allow_inf_nan=False,
+        arbitrary_types_allowed=True,
+        validate_default=True,
+        defer_build=True,  # of a hundred models a scene has ten: the others cost a program that starts half a second
     )
 
     @classmethod
     def __pydantic_init_subclass__(cls, **kwargs: Any) -> None:
-        """The signature names types as the source does: what pydantic makes of them is pages long."""
+        """Name the class, and leave annotations of class variables out, of which pydantic now has the names: it would
+        evaluate them again for each class that is derived from this one."""
         super().__pydantic_init_subclass__(**kwargs)
         cls.called = cls.__dict__.get("called", cls.__name__.lower())
-        written = {
-            name: text for base in reversed(cls.__mro__) for name, text in vars(base).get("__annotations__", {}).items()
-        }
-        fields = cls.__signature__.parameters.values()
-        plain = [f.replace(annotation=written.get(f.name, f.annotation)) for f in fields]
-        cls.__signature__ = cls.__signature__.replace(parameters=plain)
+        written = inspect.get_annotations(cls)
+        cls.__annotations__ = {name: text for name, text in written.items() if name not in cls.__class_vars__}
 
     @classmethod
     def read(cls, value: Any) -> Self:

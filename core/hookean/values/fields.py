@@ -10,6 +10,7 @@ value of `__set__` (PEP 681). Without a plugin they accept `Springs(particles=[[
 
 from __future__ import annotations
 
+import inspect
 from typing import TYPE_CHECKING, Any
 
 import pydantic
@@ -96,3 +97,20 @@ else:
                 return super().__call__(*given, **named)
             except pydantic.ValidationError as error:
                 raise first_fault(error) from None
+
+        @property
+        def __signature__(cls) -> inspect.Signature:
+            """The signature, with types as the source names them: what pydantic makes of them is pages long."""
+            cls.model_rebuild()  # does nothing where it was built
+            written = {
+                name: text for base in reversed(cls.__mro__) for name, text in inspect.get_annotations(base).items()
+            }
+            built: inspect.Signature = cls._built_signature
+            fields = built.parameters.values()
+            plain = [f.replace(annotation=written.get(f.name, f.annotation)) for f in fields]
+            return built.replace(parameters=plain)
+
+        @__signature__.setter
+        def __signature__(cls, built: Any) -> None:
+            """What pydantic gives a class as it is built: a descriptor that makes the signature when it is asked."""
+            cls._built_signature = built
