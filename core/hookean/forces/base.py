@@ -184,6 +184,8 @@ class Force(Model):
     tangent: ClassVar[Callable[[Block, Floats], Floats] | None] = None
     # what the forces of a small movement add to its tangent; the kernel gets the movement after the memory
     stressed: ClassVar[Callable[..., None] | None] = None
+    # the same of elements of its own, from its block, the positions and the movement: their particles and blocks
+    bent: ClassVar[Callable[[Block, Floats, Floats], list[tuple[Ints, Floats]]] | None] = None
     # the part of its tangent that is not symmetric (m, 3 arity, 3 arity), where slots are folded (see `rotations`)
     skew: ClassVar[Callable[[Block], Floats] | None] = None
     end_of_step: ClassVar[Callable[..., None] | None] = None
