@@ -186,8 +186,9 @@ class Force(Model):
     stressed: ClassVar[Callable[..., None] | None] = None
     # the same of elements of its own, from its block, the positions and the movement: their particles and blocks
     bent: ClassVar[Callable[[Block, Floats, Floats], list[tuple[Ints, Floats]]] | None] = None
-    # the part of its tangent that is not symmetric (m, 3 arity, 3 arity), where slots are folded (see `rotations`)
-    skew: ClassVar[Callable[[Block], Floats] | None] = None
+    # the part of its tangent that is not symmetric, from its block, memory and the positions, where slots are folded
+    # (see `rotations`): particles and blocks of elements
+    skew: ClassVar[Callable[[Block, Floats, Floats], list[tuple[Ints, Floats]]] | None] = None
     end_of_step: ClassVar[Callable[..., None] | None] = None
     impact: ClassVar[Callable[..., None] | None] = None
     support: ClassVar[Callable[..., None] | None] = None
@@ -258,6 +259,11 @@ class Force(Model):
         `sparse`: whether `gathered` is given a `node`. Without a tangent, solvers relax and stability is unknown.
         """
         return ""
+
+    @classmethod
+    def steps(cls, block: Block) -> bool:
+        """Whether elements of a block have a tangent for Newton steps alone, where `no_tangent` has a reason."""
+        return False
 
     @classmethod
     def connected(cls, block: Block) -> Ints:

@@ -48,7 +48,7 @@ class Method(Solver):
 
     def refuse(self, system: System) -> str:
         """A sentence where a force has no tangent."""
-        return system.no_tangent()
+        return system.no_tangent(steps=True)
 
     def start(self, system: System, state: State) -> None:
         """Start from rest with a small shift."""
@@ -147,7 +147,7 @@ def _step(
         return pattern.spread(kept.solve(pattern.gather(left))), shift
     values = pattern.tangent(system, state, turns)
     rhs, unit = pattern.gather(left), state.scratch["unit"][pattern.dofs // 3]
-    skew = skew_part(system, pattern.dofs)
+    skew = skew_part(system, state, pattern.dofs)
     while shift <= 1e4:
         shifted = values.copy()
         shifted[pattern.diagonal] += shift * unit
