@@ -156,6 +156,7 @@ class Force(Model):
     everywhere: ClassVar[bool] = False  # may be given without a place, and then acts on all particles
     creates: ClassVar[bool] = True  # its coordinates become particles; else they must meet one
     shared: ClassVar[tuple[str, ...]] = ()  # columns of the force as a whole, not one row for each element
+    outward: ClassVar[bool] = False  # a load along the normals of faces, so that it counts which way round these run
     solid: ClassVar[bool] = True  # something lies between the particles of an element, which others may touch
     momentary: ClassVar[bool] = False  # no force: momentum at moments, by `kick` and `next_moment`; it has no kernel
     rewired: ClassVar[bool] = False  # which of its elements feel one another changes with the shape
