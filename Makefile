@@ -44,7 +44,8 @@ floors: # laws, core and a server with the lowest versions of the dependencies t
 mutants: .venv/mutants # of all modules, or of some: make mutants MODULES="values/units.py forces/springs.py"
 	$(BIN)/python tests/mutation/run.py $(MODULES)
 
-bench: .venv/test
+bench: .venv/test # beside Kratos Multiphysics too, where it has a wheel
+	-$(INSTALL) -e '.[oracle]'
 	$(BIN)/python benchmarks/run.py $(if $(wildcard ../shared/bench),--shared ../shared/bench) \
 		$(if $(BENCH),$(BENCH),--readme README.md)
 

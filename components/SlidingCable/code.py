@@ -12,8 +12,8 @@ With friction mu the forces before and after a saddle, where the cable turns by 
 differ at most by the factor exp(mu phi). Within it nothing slips and each line is elastic on its
 own; at the limit the cable slips. It starts with one force all along. What has slipped stays so for
 the next run, and in physical time for the next step. The lines of a cable follow one another in the
-order of their rows then. Forces with friction have no energy, and no tangent: such a model relaxes,
-its stability is unknown, and it has no gradients.
+order of their rows then. Forces with friction have no energy, and a tangent for Newton steps alone:
+the stability of such a model is unknown, and it has no gradients.
 
 Sources: Aufaure, "A finite element of cable passing through a pulley", 1993; Euler, "Remarques sur
 l'effet du frottement dans l'equilibre", 1762, and Eytelwein, "Handbuch der Statik fester Koerper",

@@ -71,6 +71,21 @@ def tangled(seed: int) -> Scene:
     return Scene.read({"particles": x, "forces": [first, second, bars], "anchors": held})
 
 
+def test_hinged_ends_leave_rotations_free() -> None:
+    """A tripod of beams that are hinged all round: all twelve rotations are free, which the message names; held by an
+    anchor of rotations alone, it is the truss, N = -P / 2 * 2^0.5 in the legs against each other, and is stable."""
+    x, hinged = [[-1, 0, 0], [0, 0, 1], [1, 0, 0], [0, 1, 0]], {"release_start": "xyz", "release_end": "xyz"}
+    push = {"kind": "unary", "particles": [1], "vector": [0, 0, -1e-3]}
+    legs, foot = [[0, 1], [2, 1], [3, 1]], {"particles": [0, 2, 3]}
+    loose = hookean.relax(frame(x, legs, foot, more=[push], **hinged))
+    assert loose.stability == "mechanism" and loose.soft_modes == 12
+    assert "turns most: hold it by the rotations of an anchor" in loose.message
+    turning = {"particles": range(4), "axes": "", "rotations": "xyz"}
+    held = hookean.relax(frame(x, legs, foot, turning, more=[push], **hinged))
+    assert held.stability == "stable"
+    np.testing.assert_allclose(held.force("beam")["force"][:2], -1e-3 * np.sqrt(0.5), rtol=1e-4)
+
+
 @pytest.mark.parametrize("seed", range(12))
 def test_what_strains_nothing_meets_no_stiffness(seed: int) -> None:
     """At the start nothing is stressed, so the tangent K = C D C^T of the equilibrium matrix C and positive

@@ -110,8 +110,8 @@ def test_beams_and_what_stands_beside_them_buckle_together() -> None:
 
 @pytest.mark.parametrize("name", ["gable", "portal with a push"])
 def test_frames_of_springs_that_bend_at_corners_buckle_as_frames(name: str) -> None:
-    """On hinged feet, as bar chains (Hencky), which lead to the frame with the square of their bars: of 8 and 16 to a
-    member within 1e-2 and, both together, 2e-3."""
+    """On hinged feet, as bar chains (Hencky), which lead to the frame with the square of their bars: of 16 to a member
+    within 1e-2, of 8 four times as far off, and both together within 2e-4."""
     corners, _, loads = FRAMES[name]
     off = []
     for pieces in (8, 16):
@@ -133,5 +133,5 @@ def test_frames_of_springs_that_bend_at_corners_buckle_as_frames(name: str) -> N
         ]
         held = [{"particles": [0, n - 1]}, {"particles": range(n), "axes": "y"}]
         off.append(hookean.buckling(scene(x, forces, held), count=1).factors[0] / exact - 1.0)
-    assert np.abs(off[1]) < 1e-2
-    assert (4.0 * off[1] - off[0]) / 3.0 == pytest.approx(0.0, abs=2e-3)
+    assert np.abs(off[1]) < 1e-2 and 3.8 < off[0] / off[1] < 4.2
+    assert (4.0 * off[1] - off[0]) / 3.0 == pytest.approx(0.0, abs=2e-4)

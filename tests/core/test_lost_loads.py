@@ -174,3 +174,26 @@ def test_what_is_drawn_without_a_size_loses_nothing() -> None:
     twice = [[[0, 0, 0], [1, 0, 0]], [[1, 0, 0], [1, 0, 0]], [[1, 0, 0], [2, 0, 0]]]
     warned = relax(row({"kind": "line_weight", "lines": twice, "weight": 1.0})).report.warnings
     assert not any("load is lost" in said for said in warned)
+
+
+@pytest.mark.parametrize("load", ["pressure", "wind_pressure", "hydrostatic"])
+def test_faces_that_run_both_ways_round_are_told(load: str) -> None:
+    """Loads along normals cancel out on them, silently otherwise. Three quads and a triangle, of which one is turned:
+    it shares two edges with its neighbours. Edges of three faces have no side."""
+    points = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0], [2, 1, 0], [3, 0.5, 0], [1, 0.5, 1]]
+    flat, turned, tip, fin = [0, 1, 2, 3], [2, 5, 4, 1], [4, 6, 5], [1, 7, 2]
+    for faces, said in [
+        ([flat, turned, tip], "at 2 edges (first: faces 0 and 1)"),
+        ([flat, turned[::-1], tip], ""),
+        ([flat, turned, tip[::-1], fin], ""),
+    ]:
+        scene = Scene.read(
+            {
+                "particles": points,
+                "meshes": {"sheet": {"vertices": points, "faces": faces}},
+                "forces": [{"kind": "springs", "mesh": "sheet"}, {"kind": load, "mesh": "sheet"}],
+                "anchors": [{"particles": range(8)}],
+            }
+        )
+        told = [warning for warning in relax(scene).report.warnings if warning.startswith("/forces/1/mesh: faces")]
+        assert len(told) == (1 if said else 0) and said in "".join(told)

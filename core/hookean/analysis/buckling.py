@@ -61,10 +61,10 @@ def buckling(scene: Scene, count: int = 3, *, loads: Sequence[str] | None = None
     """Linear buckling factors and modes: (K + lambda G) phi = 0.
 
     K is the exact tangent stiffness in equilibrium without `loads`, with prestress and all other loads; u = K^-1 F the
-    linear movement under `loads`; G the stiffness that the forces have which u brings to lines, cloth, shells, hinges
-    and beams, where they are, and the rate at which the tangent of all else changes along u, by central differences,
-    with the tangent of loads that follow the shape. The factors hold as far as the structure moves little before it
-    buckles; use `load_path` where it does not (shallow arches, cable nets).
+    linear movement under `loads`; G the stiffness that the forces have which u brings to lines, cloth, shells, hinges,
+    beams and rods, where they are, and the rate at which the tangent of all else changes along u, by central
+    differences, with the tangent of loads that follow the shape. The factors hold as far as the structure moves little
+    before it buckles; use `load_path` where it does not (shallow arches, cable nets).
 
     - `scene`: The structure with its loads.
     - `count`: How many factors.

@@ -8,6 +8,7 @@ Source: Bathe, Finite Element Procedures, 1996, sections 6.3.3 and 6.8.2.
 
 from __future__ import annotations
 
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -20,11 +21,12 @@ from hookean.system.state import State
 from hookean.system.system import System
 
 Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 
 def known(group: Group) -> bool:
     """Whether the strains of a group's elements are known, so that the forces of a movement are, too."""
-    return group.cls.stressed is not None or group.cls.central is not None
+    return any(found is not None for found in (group.cls.stressed, group.cls.bent, group.cls.central))
 
 
 def stress_stiffness(unknowns: Unknowns, system: System, state: State, moved: Floats) -> Any:
@@ -34,11 +36,8 @@ def stress_stiffness(unknowns: Unknowns, system: System, state: State, moved: Fl
     number = np.full(state.x.size, -1)
     number[unknowns.dofs] = np.arange(size := len(unknowns.dofs))
     found = sparse.csc_matrix((size, size))
-    for group, memory in zip(system.groups, state.memory, strict=True):
-        index = group.block.indices
-        if not known(group) or not len(index):
-            continue
-        blocks = _blocks(group, memory, state.x, moved)
+    pairs = (_blocks(group, own, state.x, moved) for group, own in zip(system.groups, state.memory, strict=True))
+    for index, blocks in chain.from_iterable(pairs):
         mine = number[(3 * index[:, :, None] + np.arange(3)).reshape(len(index), -1)]
         row, column = (np.broadcast_to(m, blocks.shape) for m in (mine[:, :, None], mine[:, None, :]))
         kept = (row >= 0) & (column >= 0)
@@ -46,15 +45,20 @@ def stress_stiffness(unknowns: Unknowns, system: System, state: State, moved: Fl
     return (found + found.T) * 0.5
 
 
-def _blocks(group: Group, memory: Floats, x: Floats, moved: Floats) -> Floats:
+def _blocks(group: Group, memory: Floats, x: Floats, moved: Floats) -> list[tuple[Ints, Floats]]:
+    """The particles of elements and their blocks; none where strains are not known."""
     block = group.block
     count, arity = block.indices.shape
+    if not known(group) or not count:
+        return []
+    if group.cls.bent is not None:
+        return group.cls.bent(block, x, moved)
     if group.cls.stressed is None:
-        return _of_lines(group, memory, x, moved)
+        return [(block.indices, _of_lines(group, memory, x, moved))]
     blocks = np.zeros((count, 3 * arity, 3 * arity))
     along = np.column_stack([memory, moved[block.indices].reshape(count, -1)])
     dispatch.compiled(group.cls.stressed, "hessian")(x, block.indices, block.parameters, along, blocks)
-    return blocks
+    return [(block.indices, blocks)]
 
 
 def _of_lines(group: Group, memory: Floats, x: Floats, moved: Floats) -> Floats:

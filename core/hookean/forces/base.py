@@ -156,6 +156,7 @@ class Force(Model):
     everywhere: ClassVar[bool] = False  # may be given without a place, and then acts on all particles
     creates: ClassVar[bool] = True  # its coordinates become particles; else they must meet one
     shared: ClassVar[tuple[str, ...]] = ()  # columns of the force as a whole, not one row for each element
+    outward: ClassVar[bool] = False  # a load along the normals of faces, so that it counts which way round these run
     solid: ClassVar[bool] = True  # something lies between the particles of an element, which others may touch
     momentary: ClassVar[bool] = False  # no force: momentum at moments, by `kick` and `next_moment`; it has no kernel
     rewired: ClassVar[bool] = False  # which of its elements feel one another changes with the shape
@@ -184,8 +185,11 @@ class Force(Model):
     tangent: ClassVar[Callable[[Block, Floats], Floats] | None] = None
     # what the forces of a small movement add to its tangent; the kernel gets the movement after the memory
     stressed: ClassVar[Callable[..., None] | None] = None
-    # the part of its tangent that is not symmetric (m, 3 arity, 3 arity), where slots are folded (see `rotations`)
-    skew: ClassVar[Callable[[Block], Floats] | None] = None
+    # the same of elements of its own, from its block, the positions and the movement: their particles and blocks
+    bent: ClassVar[Callable[[Block, Floats, Floats], list[tuple[Ints, Floats]]] | None] = None
+    # the part of its tangent that is not symmetric, from its block, memory and the positions, where slots are folded
+    # (see `rotations`): particles and blocks of elements
+    skew: ClassVar[Callable[[Block, Floats, Floats], list[tuple[Ints, Floats]]] | None] = None
     end_of_step: ClassVar[Callable[..., None] | None] = None
     impact: ClassVar[Callable[..., None] | None] = None
     support: ClassVar[Callable[..., None] | None] = None
@@ -256,6 +260,11 @@ class Force(Model):
         `sparse`: whether `gathered` is given a `node`. Without a tangent, solvers relax and stability is unknown.
         """
         return ""
+
+    @classmethod
+    def steps(cls, block: Block) -> bool:
+        """Whether elements of a block have a tangent for Newton steps alone, where `no_tangent` has a reason."""
+        return False
 
     @classmethod
     def connected(cls, block: Block) -> Ints:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from hookean.compiled import dispatch
 from hookean.compiled.marks import device
-from hookean.forces import rod_links, rod_spins, rod_tangent
+from hookean.forces import rod_links, rod_spins, rod_stress, rod_tangent
 from hookean.forces.base import Block, Floats, Force, Ints, Places, lengths
 from hookean.forces.rod_bound import ROOM, bound_chain
 from hookean.forces.rod_chain import (
@@ -155,6 +155,7 @@ class Bend(Force):
     outputs: ClassVar[dict[str, str]] = {"angle": "angle", "moment": "moment"}
     blur: ClassVar[float] = 5e-13
     kernel: ClassVar[Any] = staticmethod(bend_kernel)
+    bent: ClassVar[Any] = staticmethod(lambda block, x, moved: bend_bent(block, x, moved))
 
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: EI / l, rest angle, factor, and the chains of `rod_chain`. Corners of zero length have
@@ -203,11 +204,10 @@ class Bend(Force):
         cls, block: Block, memory: Floats, x: Floats, node: int | None
     ) -> list[tuple[type[Force], Block]] | None:
         """Chains in pieces, or with the spins of sections as nodes from `node` on; and the corners that are in none."""
-        place, p = block.parameters[:, PLACE], block.parameters
-        if not place.any():
+        p = block.parameters
+        if not p[:, PLACE].any():
             return None
-        single = (np.abs(place) == OPEN) & (p[:, NEXT] == 0.0) & (p[:, HELD : HELD + 2] == 0.0).all(axis=1)
-        alone = np.flatnonzero((place == ALONE) | single)
+        alone = lone(block)
         some: list[tuple[type[Force], Block]] = []
         if len(alone):
             some.append((cls, Block(block.indices[alone], p[alone], memory[alone], block.names)))
@@ -248,6 +248,22 @@ class Bend(Force):
         return cls(
             particles=[[0, 1, 2], [1, 2, 3], [2, 3, 4]], stiffness=[5.0, 20.0, 1.0], rest_angle=[0.0, 1.2, 0.9]
         ), x
+
+
+def lone(block: Block) -> Ints:
+    """The rows of corners that spin by themselves: in no chain, or one of their own with ends that are free."""
+    place, p = block.parameters[:, PLACE], block.parameters
+    single = (np.abs(place) == OPEN) & (p[:, NEXT] == 0.0) & (p[:, HELD : HELD + 2] == 0.0).all(axis=1)
+    return np.flatnonzero((place == ALONE) | single)
+
+
+def bend_bent(block: Block, x: Floats, moved: Floats) -> list[tuple[Ints, Floats]]:
+    """Particles and stress stiffness of corners that spin alone, and of chains in pieces."""
+    alone = lone(block)
+    pieces = [rod_stress.single(block, alone, x)] if len(alone) else []
+    if len(alone) < len(block.indices):
+        pieces += [chained for _, chained in rod_tangent.gather(block, recorded(block, x))]
+    return [(some.indices, rod_stress.stress_stiffness(some, x, moved)) for some in pieces]
 
 
 def recorded(block: Block, x: Floats) -> Floats:

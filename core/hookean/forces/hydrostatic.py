@@ -116,6 +116,7 @@ class Hydrostatic(FaceLoad):
 
     formula: ClassVar[str] = "p = γ (level - z)"
     bears: ClassVar[bool] = True
+    outward: ClassVar[bool] = True
     kernel: ClassVar[Any] = staticmethod(hydrostatic_kernel)
     hessian: ClassVar[Any] = staticmethod(hydrostatic_hessian)
 

@@ -64,7 +64,7 @@ class Moments(Rider):
     zero: ClassVar[tuple[str, ...]] = ("moment",)
     kernel: ClassVar[Any] = staticmethod(moment_kernel)
     hessian: ClassVar[Any] = staticmethod(moment_hessian)
-    skew: ClassVar[Any] = staticmethod(moment_skew)
+    skew: ClassVar[Any] = staticmethod(lambda block, memory, x: [(block.indices, moment_skew(block))])
 
     @classmethod
     def of(cls, force: Any, block: Block) -> Block:

@@ -59,6 +59,7 @@ class Pressure(FaceLoad):
     pressure: float = Field(default=1.0, ge=-1e12, le=1e12, description="p along the normals [force/length^2]")
 
     formula: ClassVar[str] = "f = p A n / 3"
+    outward: ClassVar[bool] = True
     kernel: ClassVar[Any] = staticmethod(pressure_kernel)
     hessian: ClassVar[Any] = staticmethod(pressure_hessian)
 

@@ -9,6 +9,7 @@ Exact for rods in one piece; from piece to piece of a longer one the tangent lea
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, ClassVar
 
@@ -105,31 +106,74 @@ def _pieces(block: Block, found: Floats, rows: Ints, whole: NDArray[np.bool_], c
     return Block(np.ascontiguousarray(particles), table, np.zeros((count, 0)))
 
 
+@dataclass(frozen=True)
+class Parts:
+    """Of pieces of as many corners: of each corner its own stiffness (k, n, 9, 9), how the spin of its section and what
+    it adds to the twisting moment change with the particles of its piece (k, n, 3 a), and k r . tau (k, n); `nodes`
+    (n, 3) are its places among these particles."""
+
+    own: Floats
+    phase: Floats
+    cross: Floats
+    sizes: Floats
+    nodes: Ints
+
+    @classmethod
+    def of(cls, indices: Ints, parameters: Floats, x: Floats) -> Parts:
+        """The parts of pieces (k, a), from their particles and parameters."""
+        count, particles = indices.shape
+        size = (parameters.shape[1] - HEAD) // WIDTH
+        nodes = (np.arange(size)[:, None] + np.arange(3) - (particles == size)) % particles
+        own, spins, crossed = (np.zeros((count, size, 9, 9)), *np.zeros((2, count, size, 9)))
+        sizes, opening, closing = np.zeros((count, size)), np.zeros((count, 9)), np.zeros((count, 9))
+        dispatch.compiled(differ)(x, indices, nodes, parameters, own, spins, crossed, sizes, opening, closing)
+        at = _axes(nodes)
+        phase, cross = np.zeros((2, count, size, 3 * particles))
+        spin = np.zeros((count, 3 * particles))
+        spin[:, at[0]] = opening
+        for i in range(size):
+            phase[:, i] = spin
+            cross[:, i, at[i]] = crossed[:, i]
+            spin[:, at[i]] += spins[:, i]
+        spin[:, at[-1]] += closing
+        phase -= shares(parameters)[:, :, None] * spin[:, None]
+        return cls(own, phase, cross, sizes, nodes)
+
+    def stiffness(self) -> Floats:
+        """Stiffness (k, 3 a, 3 a) without the spin that all sections share."""
+        at, whole = _axes(self.nodes), np.zeros((len(self.own), *(2 * self.phase.shape[2:])))
+        for i in range(len(at)):
+            whole[:, at[i][:, None], at[i]] += self.own[:, i]
+        both = self.phase.transpose(0, 2, 1) @ (self.cross + 0.5 * self.sizes[:, :, None] * self.phase)
+        return np.asarray(whole + both + both.transpose(0, 2, 1))
+
+    def slope(self) -> Floats:
+        """How the moment about the spin that all sections share changes with the particles (k, 3 a)."""
+        return np.asarray((self.cross + self.sizes[:, :, None] * self.phase).sum(axis=1))
+
+
+def shares(parameters: Floats) -> Floats:
+    """The part (k, n) that each corner of pieces has of the angle that the frame misses."""
+    shared = parameters[:, SHARED, None]
+    return np.asarray(np.where(shared == 1.0, parameters[:, HEAD + PART :: WIDTH], 0.5 * shared))
+
+
+def spinning(parameters: Floats, sizes: Floats) -> NDArray[np.bool_]:
+    """Whether the sections of pieces (k,) share a spin that is free and has a least energy."""
+    return np.asarray((parameters[:, FIRST : LAST + 3] == 0.0).all(axis=1) & (sizes.sum(axis=1) > 0.0))
+
+
+def _axes(nodes: Ints) -> Ints:
+    """The places (n, 9) of the coordinates of corners in those of their piece."""
+    return np.asarray((3 * nodes[:, :, None] + np.arange(3)).reshape(len(nodes), 9))
+
+
 def tangent(indices: Ints, parameters: Floats, x: Floats) -> Floats:
     """Stiffness of pieces (k, 3 a, 3 a), from their particles and parameters."""
-    count, particles = indices.shape
-    size = (parameters.shape[1] - HEAD) // WIDTH
-    nodes = (np.arange(size)[:, None] + np.arange(3) - (particles == size)) % particles
-    own, spins, crossed = (np.zeros((count, size, 9, 9)), *np.zeros((2, count, size, 9)))
-    sizes, opening, closing = np.zeros((count, size)), np.zeros((count, 9)), np.zeros((count, 9))
-    dispatch.compiled(differ)(x, indices, nodes, parameters, own, spins, crossed, sizes, opening, closing)
-    at = (3 * nodes[:, :, None] + np.arange(3)).reshape(size, 9)
-    whole, phase, cross = (np.zeros((count, n, 3 * particles)) for n in (3 * particles, size, size))
-    spin = np.zeros((count, 3 * particles))
-    spin[:, at[0]] = opening
-    for i in range(size):
-        whole[:, at[i][:, None], at[i]] += own[:, i]
-        phase[:, i] = spin
-        cross[:, i, at[i]] = crossed[:, i]
-        spin[:, at[i]] += spins[:, i]
-    spin[:, at[-1]] += closing
-    shared, part = parameters[:, SHARED, None], parameters[:, HEAD + PART :: WIDTH]
-    phase -= np.where(shared == 1.0, part, 0.5 * shared)[:, :, None] * spin[:, None]
-    both = phase.transpose(0, 2, 1) @ (cross + 0.5 * sizes[:, :, None] * phase)
-    whole += both + both.transpose(0, 2, 1)
-    free = (parameters[:, FIRST : LAST + 3] == 0.0).all(axis=1) & (sizes.sum(axis=1) > 0.0)
-    slope = (cross + sizes[:, :, None] * phase).sum(axis=1)[free]
-    whole[free] -= slope[:, :, None] * slope[:, None] / sizes[free].sum(axis=1)[:, None, None]
+    parts = Parts.of(indices, parameters, x)
+    whole, free = parts.stiffness(), spinning(parameters, parts.sizes)
+    slope = parts.slope()[free]
+    whole[free] -= slope[:, :, None] * slope[:, None] / parts.sizes[free].sum(axis=1)[:, None, None]
     return whole
 
 

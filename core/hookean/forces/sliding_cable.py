@@ -10,7 +10,7 @@ from pydantic import model_validator
 from hookean.compiled import dispatch
 from hookean.compiled.marks import device
 from hookean.errors import InputError
-from hookean.forces import capstan, elastic, groups
+from hookean.forces import capstan, capstan_tangent, elastic, groups
 from hookean.forces.base import Block, Floats, Force, Ints, Places, lengths
 from hookean.forces.groups import begins, following
 from hookean.forces.line_lengths import apart, length_and_force, line, pull
@@ -103,8 +103,8 @@ class SlidingCable(groups.Grouped):
     With friction mu the forces before and after a saddle, where the cable turns by the angle phi, differ at most by the
     factor exp(mu phi). Within it nothing slips and each line is elastic on its own; at the limit the cable slips. It
     starts with one force all along. What has slipped stays so for the next run, and in physical time for the next step.
-    The lines of a cable follow one another in the order of their rows then. Forces with friction have no energy, and no
-    tangent: such a model relaxes, its stability is unknown, and it has no gradients.
+    The lines of a cable follow one another in the order of their rows then. Forces with friction have no energy, and a
+    tangent for Newton steps alone: the stability of such a model is unknown, and it has no gradients.
 
     Sources: Aufaure, "A finite element of cable passing through a pulley", 1993; Euler, "Remarques sur l'effet du
     frottement dans l'equilibre", 1762, and Eytelwein, "Handbuch der Statik fester Koerper", 1808 (friction).
@@ -253,14 +253,19 @@ class RoughSlidingCable(SlidingCable):
     yielding: ClassVar[tuple[str, ...]] = ("friction",)
     kernel: ClassVar[Any] = staticmethod(capstan.rough_cable_kernel)
     end_of_step: ClassVar[Any] = staticmethod(capstan.rough_cable_note)
+    skew: ClassVar[Any] = staticmethod(lambda block, memory, x: rough_cable_skew(block, memory, x))
 
     @classmethod
     def gathered(
         cls, block: Block, memory: Floats, x: Floats, node: int | None
     ) -> list[tuple[type[Force], Block]] | None:
-        """Particles by themselves, as stiff as they feel: a bound from above."""
+        """Whole cables, by the symmetric part of their tangent. Without nodes, and of large ones, particles by
+        themselves, as stiff as they feel: a bound from above."""
         if not len(block.indices):
             return []
+        if node is not None and cls.steps(block):
+            found = capstan_tangent.tangents(block, memory, x)
+            return [(groups.Whole, groups.stiff(i, 0.5 * (k + k.transpose(0, 2, 1)))) for i, k in found]
         own, w = np.unique(block.indices), np.zeros(len(x))
         dispatch.compiled(cls.kernel, "force")(
             x, np.zeros_like(x), block.indices, block.parameters, memory, np.zeros_like(x), w
@@ -268,9 +273,20 @@ class RoughSlidingCable(SlidingCable):
         return [(groups.Whole, groups.bounded(own[:, None], w[own]))]
 
     @classmethod
+    def steps(cls, block: Block) -> bool:
+        """Cables of a size that can be one element."""
+        return int(np.unique(groups.heads(block), return_counts=True)[1].max(initial=0)) <= groups.LARGEST
+
+    @classmethod
     def no_tangent(cls, block: Block, *, sparse: bool) -> str:
-        """Where a cable slips, its tangent is not symmetric."""
+        """Where a cable slips, its tangent is not symmetric: it has one for Newton steps alone."""
         return "a sliding_cable with friction has no tangent"
+
+
+def rough_cable_skew(block: Block, memory: Floats, x: Floats) -> list[tuple[Ints, Floats]]:
+    """Particles and what the tangents of whole cables have beside their symmetric part."""
+    found = capstan_tangent.tangents(block, memory, x) if len(block.indices) else []
+    return [(index, 0.5 * (k - k.transpose(0, 2, 1))) for index, k in found]
 
 
 def longer(block: Block, x: Floats) -> Floats:

@@ -101,6 +101,7 @@ class WindPressure(FaceLoad):
 
     formula: ClassVar[str] = "f = -q Cp A n/3"
     shared: ClassVar[tuple[str, ...]] = ("coefficient", "angles")
+    outward: ClassVar[bool] = True
     kernel: ClassVar[Any] = staticmethod(wind_pressure_kernel)
     hessian: ClassVar[Any] = staticmethod(wind_pressure_hessian)
 

@@ -108,6 +108,10 @@ def _caveat(system: System, rest: Equilibrium | None) -> str:
         return ""
     softest = rest.soft_particle
     most = f"; particle {system.slots.owner(softest)} moves most" if softest is not None else ""
+    if softest is not None and softest >= system.slots.count:
+        most = most.replace("moves", "turns")
+        if rest.stability is Stability.MECHANISM:
+            most += ": hold it by the rotations of an anchor, or release fewer axes of its beams"
     kind = "It is unstable" if rest.stability is Stability.UNSTABLE else "It is a mechanism"
     return f" {kind}: {rest.stability_reason}{most}."
 

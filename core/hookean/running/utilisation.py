@@ -15,6 +15,7 @@ Floats = NDArray[np.float64]
 
 NAME = "utilisation"
 """The column of results that has it."""
+ROUND = ("rod", "tube")  # shapes of sections that have no corners, where stresses about both axes would add up
 LEAST = 1e-250  # strength [force] below which a force by it may have no value in float64
 
 
@@ -27,8 +28,9 @@ def utilisation(force: Any, places: Places, columns: Mapping[str, Floats]) -> Fl
     """Utilisation (m,) [-] of the elements of a force with these columns of a result; None where no strength is known.
 
     1 is the strength itself: cables and bars |T| / T0, T0 their `strength` or strength x area; beams |N| / (A f) +
-    |My| / (Wy f) + |Mz| / (Wz f), the larger of both ends; cloth the larger of warp and weft over their strengths;
-    solid sheets the stress of von Mises over f. Safety factors are yours: put them into combinations or limits.
+    |My| / (Wy f) + |Mz| / (Wz f), round ones |N| / (A f) + (My^2 + Mz^2)^0.5 / (W f), the larger of both ends; cloth
+    the larger of warp and weft over their strengths; solid sheets the stress of von Mises over f. Safety factors are
+    yours: put them into combinations or limits.
     """
     rule = RULES.get(force.kind_name)
     return rule(force, places, columns) if rule is not None else None
@@ -56,15 +58,16 @@ def _beams(force: Any, places: Places, columns: Mapping[str, Floats]) -> Floats 
     strength = _strength(force, places)
     if strength is None:
         return None
-    known = places.section(force.section).properties
-    bent = np.zeros((2, len(columns["force"])))  # at each end; between them it is no larger, as moments are linear
+    section = places.section(force.section)
+    known, bent = section.properties, []
     for axis in "yz":
         moments = np.abs([columns[f"M{axis}0"], columns[f"M{axis}1"]])
-        if f"W{axis}" in known:
-            bent += moments / known[f"W{axis}"]
-        elif moments.any():
+        if f"W{axis}" not in known and moments.any():
             return None  # it bends by an unknown section modulus
-    return np.asarray((np.abs(columns["force"]) / known["area"] + bent.max(axis=0)) / strength)
+        bent.append(moments / known.get(f"W{axis}", np.inf))
+    # at each end; between them it is no larger, as moments are linear
+    both = np.hypot(*bent) if section.shape in ROUND else bent[0] + bent[1]
+    return np.asarray((np.abs(columns["force"]) / known["area"] + both.max(axis=0)) / strength)
 
 
 def _sheets(force: Any, places: Places, columns: Mapping[str, Floats]) -> Floats | None:

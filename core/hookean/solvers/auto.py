@@ -77,7 +77,7 @@ class Method(Solver):
         self._prepared = True
         entries = sum(len(g.block.indices) * (3 * g.cls.arity) ** 2 for g in system.groups if not g.cls.constant)
         unknowns = 3 * (len(state.x) - len(system.slots))
-        self._small = unknowns <= LARGEST_NEWTON and entries <= LARGEST_BLOCKS and not system.no_tangent()
+        self._small = unknowns <= LARGEST_NEWTON and entries <= LARGEST_BLOCKS and not system.no_tangent(steps=True)
         self._levels = len(state.x) >= LEAST_MULTILEVEL and nets.suits(system)
         self._films = len(state.x) <= LARGEST_FILM and not self._film.refuse(system)
         if self._levels:

@@ -1,7 +1,8 @@
 """Newton: steps with the exact tangent stiffness, shifted until it is positive definite, with a line search.
 
 (K + s W) dx = f on the free axes, W the stiffness that particles feel. The shift s grows where the tangent is not
-definite or a step fails and fades where steps succeed, so that the last digits come quadratically. Where loads without
+definite or a step fails and fades where steps succeed, at once where they are small and none has needed it, so that the
+last digits come quadratically. Where loads without
 an energy make the tangent unsymmetric, a step solves with the whole of it. Where steps come to an equilibrium from
 which the energy falls to second order, the run leaves it and goes on.
 Lines that keep their force while they turn have steps of their own (`linear.directions`).
@@ -47,20 +48,20 @@ class Method(Solver):
 
     def refuse(self, system: System) -> str:
         """A sentence where a force has no tangent."""
-        return system.no_tangent()
+        return system.no_tangent(steps=True)
 
     def start(self, system: System, state: State) -> None:
         """Start from rest with a small shift."""
         self.pattern = None
         state.v[:] = 0.0
         _, w, _ = system.evaluate(state)
-        state.scratch = {"shift": np.array([1e-4]), "unit": np.where(w > 0.0, w, w.mean() or 1.0)}
+        state.scratch = {"shift": np.array([1e-4, 0.0]), "unit": np.where(w > 0.0, w, w.mean() or 1.0)}
         if sharp(system):
             state.scratch["directions"] = begin(system)
 
     def advance(self, system: System, state: State, count: int, goal: float) -> int:
         """At most `count` Newton steps; fewer when no step helps any more, none when none helped."""
-        shift = float(state.scratch["shift"][0])
+        shift, needed = float(state.scratch["shift"][0]), state.scratch["shift"][1:].any()
         free = _movable(system, state)
         if not free.any():
             return 0
@@ -72,13 +73,16 @@ class Method(Solver):
             if again is None:
                 self.pattern = patterned(system, state, free, self.pattern)
             turns = Directions(system, state, state.scratch["directions"]) if "directions" in state.scratch else None
+            asked = shift
             step, shift = _step(self.pattern, system, state, now.left, shift, turns, again)
+            needed |= shift > asked
             if step is None:
                 break
             length, after = _search(system, state, step, now, strict=turns is not None)
             if again is not None and length == 0.0:
                 continue  # the tangent has changed, after all
-            if length == 1.0 and shift == 0.0 and turns is None and np.abs(step).max() <= NEAR * system.size:
+            near = length == 1.0 and turns is None and np.abs(step).max() <= NEAR * system.size
+            if near and shift == 0.0:
                 kept = self._serves(system)
             if turns is not None:
                 state.scratch["directions"] = turns.after(step)
@@ -97,15 +101,15 @@ class Method(Solver):
                 system.slots.fold(state)
                 now = Judged.of(system, state)  # moments have no energy but from the last reference on
             shift = shift * 0.1 if length == 1.0 else shift if length > 0.2 else shift * 10.0
-            if shift < 1e-12:
+            if shift < 1e-12 or (near and not needed):
                 shift = 0.0
-        state.scratch["shift"] = np.array([min(shift, 1.0)])
+        state.scratch["shift"] = np.array([min(shift, 1.0), needed])
         return done if helped else 0
 
     def sharpen(self, state: State) -> None:
         """No shift at first: what was an equilibrium is stable."""
         if "shift" in state.scratch:
-            state.scratch["shift"] = np.zeros(1)
+            state.scratch["shift"] = np.zeros(2)
 
     def _serves(self, system: System) -> Factor | None:
         """The factors of the step that was made last, where they are worth keeping for one more."""
@@ -143,7 +147,7 @@ def _step(
         return pattern.spread(kept.solve(pattern.gather(left))), shift
     values = pattern.tangent(system, state, turns)
     rhs, unit = pattern.gather(left), state.scratch["unit"][pattern.dofs // 3]
-    skew = skew_part(system, pattern.dofs)
+    skew = skew_part(system, state, pattern.dofs)
     while shift <= 1e4:
         shifted = values.copy()
         shifted[pattern.diagonal] += shift * unit

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,6 +51,8 @@ def cautions(system: System) -> list[str]:
         if group.cls.role == "load":
             sized = [part for part in group.parts if part.force.element_arity > 1 or not len(part.inputs)]
             warnings += [said for part in sized if (said := without_size(system, part.number, part.force))]
+            if group.cls.outward:
+                warnings += [said for part in group.parts if (said := turned_faces(system, part.number, part.force))]
             continue
         for part in group.parts:
             block = group.of(part)
@@ -99,6 +101,26 @@ def cautions(system: System) -> list[str]:
 
         warnings += near_misses(system)
     return warnings + loose_ends(system)
+
+
+def turned_faces(system: System, number: int, load: Any) -> str:
+    """Which faces of a load along their normals run the other way round than one beside them, so that it pushes to
+    both sides of the mesh. Empty where all is well; edges of more than two faces have no side."""
+    faces = system.places.faces(load.mesh)
+    sides = np.stack([faces, np.roll(faces, -1, axis=1)], axis=-1)
+    kept = (sides[:, :, 0] != sides[:, :, 1]) & (faces >= 0).all(axis=1)[:, None]
+    owner, (one, other) = np.nonzero(kept)[0], sides[kept].T
+    keys = np.array([one, np.minimum(one, other)]) * len(system.x) + [other, np.maximum(one, other)]
+    ways, edges = (np.unique(key, return_inverse=True, return_counts=True)[1:] for key in keys)  # rows are slower
+    turned = np.flatnonzero((ways[1][ways[0]] == 2) & (edges[1][edges[0]] == 2))
+    if not len(turned):
+        return ""
+    first, second = turned[keys[0, turned] == keys[0, turned[0]]]
+    return (
+        f"/forces/{number}/mesh: faces beside each other run round in different directions at {len(turned) // 2} edges "
+        f"(first: faces {owner[first]} and {owner[second]}), so {load.kind_name} pushes to both sides of the mesh; "
+        "unify their normals"
+    )
 
 
 def without_size(system: System, number: int, load: Force) -> str:

@@ -207,9 +207,11 @@ class System:
                 node = max(node, int(block.indices.max(initial=-1)) + 1)
         return found
 
-    def no_tangent(self, *, sparse: bool = True) -> str:
-        """Why the system has no tangent, as a sentence without its full stop; empty where it has one."""
-        found = (group.cls.no_tangent(group.block, sparse=sparse) for group in self.groups)
+    def no_tangent(self, *, sparse: bool = True, steps: bool = False) -> str:
+        """Why the system has no tangent, as a sentence without its full stop; empty where it has one. `steps`: whether
+        one that Newton steps can use is enough."""
+        asked = [group for group in self.groups if not (steps and group.cls.steps(group.block))]
+        found = (group.cls.no_tangent(group.block, sparse=sparse) for group in asked)
         return next((reason for reason in found if reason), "")
 
     def brace(self, *, changed: bool = True) -> None:

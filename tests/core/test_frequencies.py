@@ -1,0 +1,136 @@
+"""Natural frequencies against closed forms of strings, chains and nets."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import scipy.optimize
+import scipy.special
+
+import hookean
+from hookean import Scene, Simulation
+
+from .bar_scenes import chain, string
+
+
+def test_a_prestressed_string_has_its_frequencies() -> None:
+    """Lagrange's loaded string: omega_j = 2 sqrt(T / m a) sin(j pi / (2 n + 2)), each in two planes. To 1e-9: the
+    eigenvalues beside the axial stiffness, 2e4 times that across, lose 5 digits of 16."""
+    n, tension, spacing, mass = 9, 5.0, 0.3, 2.0
+    found = hookean.frequencies(Scene.read(string()), count=2 * n)
+    wanted = 2.0 * np.sqrt(tension / (mass * spacing)) * np.sin(np.arange(1, n + 1) * np.pi / (2 * n + 2))
+    np.testing.assert_allclose(found.angular_frequencies, np.repeat(wanted, 2), rtol=1e-9)
+    np.testing.assert_allclose(found.frequencies, found.angular_frequencies / (2.0 * np.pi), rtol=1e-15)
+    shape = np.sin(np.arange(n + 2) * np.pi / (n + 1))
+    np.testing.assert_allclose(np.linalg.norm(found.modes[0], axis=1) / np.linalg.norm(found.modes[0, 5]), shape,
+                               atol=1e-9)  # fmt: skip
+    assert np.abs(found.modes[:, [0, -1]]).max() == 0.0  # held ends do not move
+
+
+def test_effective_masses_add_up() -> None:
+    """Over all modes they are the mass that is free (Clough and Penzien, 1993, section 12-5)."""
+    found = hookean.frequencies(Scene.read(string(4)), count=12)
+    np.testing.assert_allclose(found.effective_masses.sum(axis=0), [8.0, 8.0, 8.0], rtol=1e-9)
+    np.testing.assert_allclose(found.mass, 8.0)
+
+
+def test_effective_masses_of_beams_add_up() -> None:
+    """Also where orientations move with the modes: over all modes of a cantilever they are the mass of its four free
+    particles (Clough and Penzien, 1993, section 12-5), and turns add none along x, y or z."""
+    beam = {"kind": "beam", "particles": chain(4), "E": 1e4, "G": 5e3, "A": 1.0, "Iy": 1e-2, "Iz": 2e-2, "J": 2e-2}
+    x = np.linspace([0, 0, 0], [2.0, 1.0, 0.5], 5)
+    held = [{"particles": [0], "rotations": "xyz"}]
+    found = hookean.frequencies(
+        Scene.read({"particles": x, "masses": 3.0, "forces": [beam], "anchors": held}), count=24
+    )
+    assert len(found.frequencies) == 24
+    np.testing.assert_allclose(found.effective_masses.sum(axis=0), [12.0, 12.0, 12.0], rtol=1e-9)
+    np.testing.assert_allclose(found.mass, 12.0)
+
+
+def test_a_hanging_chain_has_laguerres_frequencies() -> None:
+    """n masses on links that keep their length a: omega^2 = (g / a) times the zeros of the Laguerre polynomial L_n.
+    To 1e-6: links are 1e7 times as stiff as they are heavy, which shortens nothing at rest (their rest length allows
+    for the pull), but lets them give by 1e-7 in motion."""
+    n, length, g, mass, k = 10, 3.0, 9.81, 0.7, 1e9
+    a = length / n
+    x = np.zeros((n + 1, 3))
+    x[:, 2] = -np.arange(n + 1) * a
+    rest = a - mass * g * np.arange(n, 0, -1) / k
+    springs = {"kind": "springs", "particles": chain(n), "stiffness": k, "rest_length": rest}
+    weight = {"kind": "unary", "particles": np.arange(1, n + 1), "vector": [0, 0, -mass * g]}
+    scene = Scene.read({"particles": x, "masses": mass, "forces": [springs, weight], "anchors": [{"particles": [0]}]})
+    found = hookean.frequencies(scene, count=6).angular_frequencies * np.sqrt(length / g)
+    zeros = scipy.special.roots_laguerre(n)[0]
+    np.testing.assert_allclose(found, np.repeat(np.sqrt(n * zeros[:3]), 2), rtol=1e-6)
+    np.testing.assert_allclose(found[::2], [1.173855, 2.700842, 4.252462], atol=1e-6)  # published to these digits
+
+
+@pytest.mark.parametrize("n", [6, 25])
+def test_a_prestressed_net_has_its_frequencies(n: int) -> None:
+    """A square net of n x n masses: omega_ij^2 = 4 T / (m a) (sin^2(i pi / (2 n + 2)) + sin^2(j pi / (2 n + 2))) across
+    it; by dense matrices (n = 6) and by shift-invert iteration (n = 25, 1,875 unknowns)."""
+    tension, a, mass, k = 3.0, 0.5, 0.2, 600.0
+    number = np.arange((n + 2) ** 2).reshape(n + 2, n + 2)
+    x = np.zeros((number.size, 3))
+    x[:, :2] = a * np.stack(np.divmod(np.arange(number.size), n + 2), axis=1)
+    pairs = [
+        [number[:-1, 1:-1].ravel(), number[1:, 1:-1].ravel()],
+        [number[1:-1, :-1].ravel(), number[1:-1, 1:].ravel()],
+    ]
+    springs = {
+        "kind": "springs",
+        "particles": np.concatenate(pairs, axis=1).T,
+        "stiffness": k,
+        "rest_length": a - tension / k,
+    }
+    inner = np.isin(number, number[1:-1, 1:-1])
+    scene = Scene.read(
+        {"particles": x, "masses": mass, "forces": [springs], "anchors": [{"particles": number[~inner]}]}
+    )
+    sines = np.sin(np.arange(1, n + 1) * np.pi / (2 * n + 2)) ** 2
+    wanted = np.sort(np.sqrt(4.0 * tension / (mass * a) * (sines[:, None] + sines)).ravel())
+    found = hookean.frequencies(scene, count=6)
+    np.testing.assert_allclose(found.angular_frequencies, wanted[:6], rtol=1e-9)
+    assert np.abs(found.modes[0][:, :2]).max() < 1e-6  # across the net
+    again = hookean.frequencies(scene, count=6)
+    assert again.modes.tobytes() == found.modes.tobytes()
+
+
+def test_results_and_simulations_have_the_frequencies_of_their_scene() -> None:
+    """To 1e-10: two ways to the same shape differ by rounding, and 5 digits are lost beside the axial stiffness."""
+    scene = Scene.read(string())
+    wanted = hookean.frequencies(scene).frequencies
+    np.testing.assert_allclose(hookean.frequencies(hookean.relax(scene)).frequencies, wanted, rtol=1e-10)
+    running = Simulation(scene)
+    running.step()
+    np.testing.assert_allclose(hookean.frequencies(running).frequencies, wanted, rtol=1e-10)
+
+
+def test_masses_given_are_those_that_count() -> None:
+    """omega falls with the root of the mass."""
+    scene = Scene.read(string())
+    light, heavy = (hookean.frequencies(scene, masses=m).frequencies for m in (2.0, 8.0))
+    np.testing.assert_allclose(light, 2.0 * heavy, rtol=1e-12)
+
+
+def test_a_motion_that_nothing_resists_has_frequency_zero() -> None:
+    """A bar on one anchor turns freely about it: two rotations are free, its length is not (omega^2 = k / m)."""
+    bar = {"kind": "springs", "particles": [[0, 1]], "stiffness": 50.0}
+    scene = Scene.read(
+        {"particles": [[0, 0, 0], [2, 1, 2]], "masses": 2.0, "forces": [bar], "anchors": [{"particles": [0]}]}
+    )
+    found = hookean.frequencies(scene)
+    np.testing.assert_allclose(found.angular_frequencies, [0.0, 0.0, 5.0], atol=1e-12)
+    assert found.periods[:2] == [None, None]
+    assert "no resistance" in found.summary()[0]
+
+
+def test_an_unstable_shape_has_a_negative_frequency() -> None:
+    """A bar pushed along itself by P on an anchor falls over: omega^2 = -P / (l m)."""
+    bar = {"kind": "springs", "particles": [[0, 1]], "stiffness": 1e3, "rest_length": 1.01}
+    push = {"kind": "unary", "particles": [1], "vector": [0, 0, -10.0]}
+    settings = {"allow_unstable": True, "solver": "newton"}
+    spec = {"particles": [[0, 0, 0], [0, 0, 1.0]], "forces": [bar, push], "anchors": [{"particles": [0]}]}
+    found = hookean.frequencies(Scene.read({**spec, "settings": settings}), count=1)
+    np.testing.assert_allclose(found.angular_frequencies, [-np.sqrt(10.0)], rtol=1e-9)
