@@ -166,6 +166,8 @@ def _domain(value: Any) -> Any:
     """A domain; a number is the domain from 0 to it, a text is `0 to 10`."""
     if isinstance(value, rhino3dm.Interval):
         return value
+    if isinstance(value, tuple) and len(value) == 2:
+        return rhino3dm.Interval(*map(float, value))
     if isinstance(value, str) and (found := _DOMAIN.fullmatch(value)):
         return rhino3dm.Interval(float(found[1]), float(found[2]))
     number = _number(value) if not isinstance(value, rhino3dm.Curve) else None
