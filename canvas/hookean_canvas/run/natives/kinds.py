@@ -28,6 +28,7 @@ _KINDS = {
 }  # fmt: skip
 PARAMETERS: dict[UUID, tuple[str, str]] = {guids.PARAMETERS[name]: (name, kind) for name, kind in _KINDS.items()}
 """Floating parameters: their names and the kind of values they hold."""
+PARAMETERS[UUID("a484c1c6-bb88-4507-b650-58aadebda4c1")] = ("PlanktonMesh", "halfedge")  # github.com/meshmash/Plankton
 
 
 def kind_of(guid: UUID, name: str) -> str | None:
@@ -192,6 +193,14 @@ def _mesh(value: Any) -> Any:
     return mesh_brep(faces, None)
 
 
+def _halfedge(value: Any) -> Any:
+    """A mesh as those of Plankton are."""
+    from hookean_canvas.run.natives.plankton import welded
+
+    mesh = _mesh(value)
+    return None if mesh is None else welded(mesh)
+
+
 def _brep(value: Any) -> Any:
     """What has faces for the natives that take Breps: a Brep, an extrusion, a surface, a box, a closed flat curve."""
     if isinstance(value, (rhino3dm.BoundingBox, shapes.TiltedBox)):
@@ -278,6 +287,7 @@ _CASTS: dict[str, Callable[[Any], Any]] = {
     "domain": _domain,
     "rectangle": _rectangle,
     "mesh": _mesh,
+    "halfedge": _halfedge,
     "brep": _brep,
     "faces": lambda value: value if isinstance(value, rhino3dm.Mesh) else _brep(value),
     "surface": _surface,
