@@ -15,6 +15,7 @@ from hookean_canvas.definitions import layout
 from hookean_canvas.definitions.write import Definition, flat
 from hookean_canvas.inspect import lint
 from hookean_canvas.run import graph
+from hookean_canvas.run.evaluate import Canvas
 from soak import examples
 
 
@@ -93,6 +94,22 @@ def test_wrong_names_are_refused_with_the_right_ones() -> None:
         ends["Middle"]
     with pytest.raises(KeyError, match="select one of Start, End"):
         d.native("Line", start_point=ends)
+
+
+def test_a_number_given_to_a_domain_is_the_domain_from_0_to_it() -> None:
+    """Grasshopper's own conversion; Range over it in 4 steps, and Random without one over 0 to 1."""
+    d = Definition("domain", "Domain", "A number as a domain.")
+    d.panel("steps", d.native("Range", domain=10, steps=4))
+    d.panel("random", d.native("Random", number=50))
+    panels = Canvas(graph.of(d.archive())).run().panels
+    assert panels["steps"].values_in_order() == [0.0, 2.5, 5.0, 7.5, 10.0]
+    assert 0.0 <= min(panels["random"].values_in_order()) < 0.2 < 0.8 < max(panels["random"].values_in_order()) <= 1.0
+
+
+def test_a_number_is_refused_by_an_input_that_holds_none() -> None:
+    d = Definition("number", "Number", "A number as a curve.")
+    with pytest.raises(TypeError, match="Length, curve: 2 is a number, and this input takes a curve"):
+        d.native("Length", curve=2)
 
 
 def test_an_input_can_flatten_what_reaches_it() -> None:

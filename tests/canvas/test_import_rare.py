@@ -101,8 +101,13 @@ def test_circles_as_large_as_a_mesh_is_bright_push_each_other_apart_by_their_rad
     held = [d.kangaroo("Anchor", soft, ["A"], guid=SOFT, p=point) for point in points]
     solver = d.solved(circles, *held, reset=d.toggle("Reset", False))
     d.panel("particles", solver["V"])
-    found = places(ran(d, tmp_path))
+    d.panel("outputs", solver["O"])
+    outcome = ran(d, tmp_path)
+    found = places(outcome)
     assert float(np.linalg.norm(found[1] - found[0])) == pytest.approx(0.92 / 1.5, abs=1e-3)
+    rounds = [one for one in outcome.panels["outputs"].values_in_order() if isinstance(one, rhino3dm.Circle)]
+    assert [one.Radius for one in rounds] == pytest.approx([0.36, 0.36], rel=1e-6)
+    np.testing.assert_allclose([[one.Center.X, one.Center.Y, one.Center.Z] for one in rounds], found)
 
 
 @pytest.mark.slow

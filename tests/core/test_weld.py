@@ -386,3 +386,25 @@ def test_an_anchor_of_a_scene_without_particles_is_refused_in_a_sentence(strict:
     with pytest.raises(InputError, match="mast: the scene has no particles to meet") as found:
         compile(Scene.read(spec), empty=True)
     assert found.value.pointer == "/anchors/0/points"
+
+
+def test_edges_of_a_mesh_that_weld_to_points_are_counted_and_measured() -> None:
+    """A square of 4 by 4 vertices, 0.5 mm apart, in metres: only the first and last of each row and column stay."""
+    at = 0.0005 * np.arange(4.0)
+    vertices = [[x, y, 0.0] for y in at for x in at]
+    faces = [[4 * j + i, 4 * j + i + 1, 4 * j + i + 5, 4 * j + i + 4] for j in range(3) for i in range(3)]
+    mesh = {"vertices": vertices, "faces": faces}
+    data = {"meshes": {"cloth": mesh}, "forces": [{"kind": "springs", "mesh": "cloth"}]}
+    (said,) = [one for one in compile(Scene.read(data)).report.warnings if one.startswith("/meshes")]
+    assert "edges have their ends in one particle (first: vertices 0 and 1), up to 0.0005 m long" in said
+    assert said.endswith("lower weld_tolerance, 0.001 m now, or draw the mesh larger")
+    finer = compile(Scene.read({**data, "weld_tolerance": 1e-6})).report.warnings
+    assert not [one for one in finer if one.startswith("/meshes")]
+
+
+def test_a_mesh_that_is_welded_along_a_seam_has_no_edge_to_warn_of() -> None:
+    """Two squares with vertices of their own at their common edge, a triangle that repeats its last corner."""
+    vertices = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [1, 0, 0], [2, 0, 0], [1, 1, 0]]
+    mesh = {"vertices": vertices, "faces": [[0, 1, 2, 3], [4, 5, 6]]}
+    data = {"meshes": {"cloth": mesh}, "forces": [{"kind": "springs", "mesh": "cloth"}]}
+    assert not [one for one in compile(Scene.read(data)).report.warnings if one.startswith("/meshes")]

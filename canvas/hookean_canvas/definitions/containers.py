@@ -89,7 +89,16 @@ _STORED: dict[str, tuple[str, Type]] = {
     "boolean": ("boolean", Type.BOOL),
     "point": ("Coordinate", Type.POINT3D),
     "vector": ("vector", Type.POINT3D),
+    "domain": ("interval", Type.INTERVAL1D),
 }
+
+
+def typed(kind: str, value: float) -> Any:
+    """A number as what an input of this kind stores; a domain is that from 0 to it. KeyError for a kind that holds no
+    number."""
+    if kind == "domain":
+        return (0.0, float(value))
+    return {"number": float, "integer": int, "boolean": bool}[kind](value)
 
 
 def persistent(chunk: Chunk, kind: str, values: Sequence[Any]) -> None:

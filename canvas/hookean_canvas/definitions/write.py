@@ -289,8 +289,13 @@ class Definition:
                 raise KeyError(f"{made.kind} has no input {key!r}; it has {', '.join(made.inputs)}")
             if isinstance(value, (int, float)) and key in kinds:
                 chunk = made.inputs[key][1]
+                try:
+                    stored = containers.typed(kinds[key], value)
+                except KeyError:
+                    raise TypeError(f"{made.kind}, {key}: {value!r} is a number, and this input takes a {kinds[key]}; "
+                                    "connect an object that gives one") from None  # fmt: skip
                 chunk.chunks = [c for c in chunk.chunks if c.name != "PersistentData"]
-                containers.persistent(chunk, kinds[key], [float(value) if kinds[key] == "number" else value])
+                containers.persistent(chunk, kinds[key], [stored])
             else:
                 self._wire(made, key.strip("_"), value)
         return made

@@ -175,9 +175,11 @@ force = found and goal(
 LOAD = f"""{_GOAL % "Loads in N."}
 force = goal(canvas.force(ghenv, "unary", points=_point, vector=_nodalforce), "load")
 """
-OUTPUTS = '''"""Outputs of goals in the tree of the goals: data for Bar Output and others, or geometry; at rest."""
+OUTPUTS = '''"""Outputs of goals in the tree of the goals: data for Bar Output, circles, or geometry; at rest."""
 
 import json
+
+import Rhino
 
 from hookean_client import canvas
 
@@ -219,7 +221,12 @@ def held(made):
 def moving(found):
     """An output for each element of a force."""
     told = found["source"].get("goal")
+    if found["kind"] == "collide_curve":
+        return  # it holds circles inside, which are outputs already
     for i, points in enumerate(found["points"]):
+        if found["kind"] == "circle_image":
+            yield Rhino.Geometry.Circle(canvas.geometry.to_point(points[0]), found["radius"][i])
+            continue
         record = {"points": points}
         for column, values in list(found.items()) + list((told or {}).items()):
             if isinstance(values, list) and len(values) == len(found["points"]):

@@ -118,7 +118,7 @@ _CIRCLES = Swap(
         Piece("*half", {"strength": "numbers"}, feeds={"halves": "0.strength"}),
     ),
     "half of the strength, as SphereCollide; circles are large where the mesh is bright; Kangaroo's law is not "
-    "published; the radii are results of the Engine, not outputs of the goal",
+    "published; the solver gives out the circles where it is at rest",
     unless={"curves": ""},
 )
 _KEPT = Piece(

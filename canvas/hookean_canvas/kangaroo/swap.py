@@ -84,11 +84,11 @@ class Swapping:
         self.swap = replace(self.swap, pieces=tuple(pieces), differs=told)
 
     def _has_data(self) -> bool:
-        """Whether it is a solver of goals that give data out, not geometry."""
+        """Whether it is a solver of goals that give out data, or circles, not geometry that they got."""
         if role(self.known) is not Role.SOLVER or self.known.generation != "second":
             return False
         above = [self.whole.known[id(part.chunk)] for part in self.whole.systems.goals_of(self.part)]
-        return any(known.generation == "engineering" for known in above if known)
+        return any(known.generation == "engineering" or key(known.name) == "imagecircles" for known in above if known)
 
     def _parameter(self) -> None:
         """A floating parameter instead of a component that only hands on, or makes nothing here; the wires out of it

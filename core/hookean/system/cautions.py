@@ -100,7 +100,29 @@ def cautions(system: System) -> list[str]:
         from hookean.system.near_misses import near_misses
 
         warnings += near_misses(system)
-    return warnings + loose_ends(system)
+    return [*warnings, *closed_up(system.places), *loose_ends(system)]
+
+
+def closed_up(places: Welded) -> list[str]:
+    """Meshes with edges whose ends became one particle, as a mesh in millimetres has them where the unit is a metre."""
+    found = []
+    wanted = dict.fromkeys(str(f.mesh) for f in places.scene.forces if f.role != "load" and getattr(f, "mesh", None))
+    for name in wanted:
+        mesh = places.scene.meshes[name]
+        ends = np.stack([mesh.faces, np.roll(mesh.faces, -1, axis=1)], axis=2).reshape(-1, 2)
+        at = places.vertices(name)[ends]
+        ends = ends[(at[:, 0] == at[:, 1]) & (at[:, 0] >= 0)]
+        ends = ends[(mesh.vertices[ends[:, 0]] != mesh.vertices[ends[:, 1]]).any(axis=1)]
+        if len(ends):
+            short = np.unique(np.sort(ends, axis=1), axis=0)
+            longest = float(np.linalg.norm(mesh.vertices[short[:, 0]] - mesh.vertices[short[:, 1]], axis=1).max())
+            many = "1 edge has its ends" if len(short) == 1 else f"{len(short)} edges have their ends"
+            found.append(
+                f"/meshes/{name}: {many} in one particle (first: vertices {short[0, 0]} and {short[0, 1]}), up to "
+                f"{longest:.3g} {places.scene.units.length} long; lower weld_tolerance, "
+                f"{places.tolerance:g} {places.scene.units.length} now, or draw the mesh larger"
+            )
+    return found
 
 
 def turned_faces(system: System, number: int, load: Any) -> str:

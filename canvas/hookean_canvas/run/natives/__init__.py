@@ -32,6 +32,7 @@ from hookean_canvas.run.natives import (  # noqa: F401  each declares the native
     morphs,
     places,
     planes,
+    plankton,
     points_more,
     primitives,
     regions,

@@ -26,7 +26,7 @@ def _generator(seed: int) -> np.random.Generator:
 
 
 @native("2ab17f9a-d852-4405-80e1-938c5e57e78d", "Random", "Random",
-        "Range (R): domain = '0 to 1'; Number (N): integer = 10; Seed (S): integer = 1", "Random (nums): list",
+        "Range (R): domain = (0.0, 1.0); Number (N): integer = 10; Seed (S): integer = 1", "Random (nums): list",
         remark=_OTHER)  # fmt: skip
 def random(of: Any, count: int, seed: int) -> list[float]:
     """Numbers of a domain, each as likely as another."""

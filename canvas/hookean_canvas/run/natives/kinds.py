@@ -28,6 +28,7 @@ _KINDS = {
 }  # fmt: skip
 PARAMETERS: dict[UUID, tuple[str, str]] = {guids.PARAMETERS[name]: (name, kind) for name, kind in _KINDS.items()}
 """Floating parameters: their names and the kind of values they hold."""
+PARAMETERS[UUID("a484c1c6-bb88-4507-b650-58aadebda4c1")] = ("PlanktonMesh", "halfedge")  # github.com/meshmash/Plankton
 
 
 def kind_of(guid: UUID, name: str) -> str | None:
@@ -166,6 +167,8 @@ def _domain(value: Any) -> Any:
     """A domain; a number is the domain from 0 to it, a text is `0 to 10`."""
     if isinstance(value, rhino3dm.Interval):
         return value
+    if isinstance(value, tuple) and len(value) == 2:
+        return rhino3dm.Interval(*map(float, value))
     if isinstance(value, str) and (found := _DOMAIN.fullmatch(value)):
         return rhino3dm.Interval(float(found[1]), float(found[2]))
     number = _number(value) if not isinstance(value, rhino3dm.Curve) else None
@@ -188,6 +191,14 @@ def _mesh(value: Any) -> Any:
     from hookean_canvas.run.natives.meshes_made import mesh_brep
 
     return mesh_brep(faces, None)
+
+
+def _halfedge(value: Any) -> Any:
+    """A mesh as those of Plankton are."""
+    from hookean_canvas.run.natives.plankton import welded
+
+    mesh = _mesh(value)
+    return None if mesh is None else welded(mesh)
 
 
 def _brep(value: Any) -> Any:
@@ -276,6 +287,7 @@ _CASTS: dict[str, Callable[[Any], Any]] = {
     "domain": _domain,
     "rectangle": _rectangle,
     "mesh": _mesh,
+    "halfedge": _halfedge,
     "brep": _brep,
     "faces": lambda value: value if isinstance(value, rhino3dm.Mesh) else _brep(value),
     "surface": _surface,

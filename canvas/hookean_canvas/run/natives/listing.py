@@ -25,7 +25,7 @@ SUBJECTS = {
     "points_more": "Neighbours and coordinates", "planes": "Planes that are turned", "meetings": "Intersections",
     "curves_more": "Measures of curves", "curves_changed": "Changing curves",
     "grids": "Grids of cells", "regions": "Regions and cells", "sections": "Sections and spans",
-    "freeform": "Beside and along curves",
+    "freeform": "Beside and along curves", "plankton": "Halfedge meshes of Plankton",
 }  # fmt: skip
 """Headings by the modules that declare natives."""
 
