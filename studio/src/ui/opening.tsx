@@ -4,7 +4,7 @@ import { useEffect, useRef } from "preact/hooks";
 import * as api from "../api";
 import { viewOf } from "../view/kept";
 import { keepSeen } from "./looked";
-import { quiet, refuse, tell } from "./notices";
+import { quiet, refuse, tellOpen } from "./notices";
 import { go, met } from "./place";
 import { drafted } from "./sheetstate";
 
@@ -23,8 +23,7 @@ async function openFile(file: File): Promise<void> {
     const made = await api.open(file);
     keepSeen(made.key, await viewOf(file));
     go(made.key);
-    const warnings = made.warnings ?? [];
-    if (warnings.length) tell(`${file.name} is open. Notes on the file:`, warnings);
+    tellOpen(file.name, made.warnings);
   } catch (error) {
     met(error);
     refuse(error, `${file.name} was not opened. `);
