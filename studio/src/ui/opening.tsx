@@ -6,6 +6,8 @@ import { viewOf } from "../view/kept";
 import { keepSeen } from "./looked";
 import { quiet, refuse, tellOpen } from "./notices";
 import { go, met } from "./place";
+import { keepReel } from "./reel";
+import { reelOf } from "./reelfile";
 import { drafted } from "./sheetstate";
 
 const over = signal(false);
@@ -20,7 +22,9 @@ async function openFile(file: File): Promise<void> {
   quiet();
   try {
     if (/\.(3dm|obj|json)$/i.test(file.name) && (await drafted(file))) return;
-    const made = await api.open(file);
+    const { reel, model } = await reelOf(file);
+    const made = await api.open(model);
+    if (reel) await keepReel(made.key, reel);
     keepSeen(made.key, await viewOf(file));
     go(made.key);
     tellOpen(file.name, made.warnings);
