@@ -312,8 +312,8 @@ def test_curves_guide_the_rim(draw: Callable[..., Any]) -> None:
 
 
 def test_surfaces_guide_all_particles_of_a_layer_or_those_nearest(draw: Callable[..., Any]) -> None:
-    """Two squares of 1 m between two level plates: one reaches over their left corners, 0.25 m above, one over the right
-    ones, 0.5 m below. A pull is the strength of 10 N/m times the distance to a plate, to its edge 0.875 m beside."""
+    """Two squares of 1 m between two level plates: one reaches over their left corners, 0.25 m above, one over the
+    right ones, 0.5 m below. A pull is the strength of 10 N/m times the distance to a plate, to its edge 0.875 m beside."""
 
     def plate(left: float, right: float, z: float) -> Mesh:
         corners = [[left, -1.0, z], [right, -1.0, z], [right, 4.0, z], [left, 4.0, z]]
@@ -340,7 +340,7 @@ def test_surfaces_guide_all_particles_of_a_layer_or_those_nearest(draw: Callable
     assert pulls(pulls="nearest") == 4 * nearest
     assert pulls(pulls="nearest edges", layer="first") == 2 * nearest + 2 * none
     assert pulls(pulls="all", layer="second") == 2 * none + 2 * both
-    assert 'finds no object; its layers with visible objects are' in draft(model, choices(layer="third")).fault
+    assert "finds no object; its layers with visible objects are" in draft(model, choices(layer="third")).fault
 
 
 def test_a_shell_is_a_membrane_without_prestress_and_its_bending(draw: Callable[..., Any]) -> None:

@@ -74,7 +74,8 @@ export function SelectedFaces({ studio }: { studio: Studio }) {
         {button("Their edge", "Select the particles along the edge of these faces", rim, chosen.length > 0)}
       </div>
       <p role="status" class="note">
-        {counted(chosen.length, "face")} selected. {all.length ? "Click a face to add or remove it." : "The model has no faces."}
+        {counted(chosen.length, "face")} selected.{" "}
+        {all.length ? "Click a face to add or remove it." : "The model has no faces."}
         {!session.readOnly && ' Forces are added to them by "Selected faces" below.'}
       </p>
     </>

@@ -20,7 +20,7 @@ export function Timeline({ studio, title }: { studio: Studio; title: string }) {
           type="button"
           aria-pressed={isRecording}
           disabled={!live && !isRecording}
-          title="Keep each frame that arrives, in this browser and in saved .hookean files. Long ones are thinned to 96 MB"
+          title="Keep each frame that arrives, here and in saved .hookean files. Long recordings are thinned to 96 MB"
           onClick={() => (isRecording ? film.stop() : film.record())}
         >
           {isRecording ? "Stop recording" : "Record"}
