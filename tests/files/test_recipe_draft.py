@@ -313,7 +313,8 @@ def test_curves_guide_the_rim(draw: Callable[..., Any]) -> None:
 
 def test_surfaces_guide_all_particles_of_a_layer_or_those_nearest(draw: Callable[..., Any]) -> None:
     """Two squares of 1 m between two level plates: one reaches over their left corners, 0.25 m above, one over the
-    right ones, 0.5 m below. A pull is the strength of 10 N/m times the distance to a plate, to its edge 0.875 m beside."""
+    right ones, 0.5 m below. A pull is the strength of 10 N/m times the distance to a plate or, 0.875 m beside, to its
+    edge."""
 
     def plate(left: float, right: float, z: float) -> Mesh:
         corners = [[left, -1.0, z], [right, -1.0, z], [right, 4.0, z], [left, 4.0, z]]

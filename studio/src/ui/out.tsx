@@ -20,7 +20,7 @@ const FILES: { format: api.Format; seen: string; ending: string; hint: string }[
     format: "hookean",
     seen: "Save",
     ending: ".hookean",
-    hint: "The whole model in a file: scene, shape, view, recording, bookmarks; opens here, in hookean relax and Python",
+    hint: "The whole model: scene, shape, view, recording, bookmarks; opens here, in hookean relax and in Python",
   },
   {
     format: "scene",

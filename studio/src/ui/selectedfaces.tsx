@@ -55,7 +55,7 @@ export function SelectedFaces({ studio }: { studio: Studio }) {
         {button("No faces", "Nothing", () => choose([]), chosen.length > 0)}
       </div>
       <PartOf topology={topology} choose={choose} />
-      <label class="field" title={`Numbers of faces, in the order of the meshes: 0 to ${all.length - 1}; Enter selects them`}>
+      <label class="field" title={`Faces by number, in the order of the meshes, 0 to ${all.length - 1}; Enter selects`}>
         <span>Face numbers</span>
         <input
           type="text"

@@ -127,7 +127,7 @@ function Bookmarks({ studio: { film, view } }: { studio: Studio }) {
           value={name.value}
           onInput={(event) => (name.value = event.currentTarget.value)}
         />
-        <button type="submit" title="Keep the shape that is shown and the view, in this browser and in saved .hookean files">
+        <button type="submit" title="Keep the shape that is shown and the view, here and in saved .hookean files">
           Bookmark
         </button>
       </form>
