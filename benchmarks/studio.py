@@ -61,13 +61,14 @@ class Watched:
         browser = next(p for p in psutil.Process().children(recursive=True) if "chrom" in p.name())
         while (above := browser.parent()) is not None and "chrom" in above.name():
             browser = above
-        found = {"server": 0.0, "page": 0.0, "renderer": 0.0}
+        found = {"server": 0.0, "page": 0.0, "scripts": 0.0, "renderer": 0.0}
         for process in (psutil.Process(self.server.process.pid), browser):
             for one in [process, *process.children(recursive=True)]:
                 if process is not browser:
                     found["server"] += spent(one)
                 elif "--type=renderer" in one.cmdline():
                     found["page"] += spent(one)
+                    found["scripts"] += spent(one, main=True)
                 elif "--type=gpu-process" in one.cmdline():
                     found["renderer"] += spent(one)
         return found
@@ -102,13 +103,14 @@ class Watched:
         self.page.get_by_role("button", name=name, exact=True).click()
 
 
-def spent(process: psutil.Process) -> float:
-    """Processor time of all threads of a process [ms], to the nanosecond where the system tells."""
+def spent(process: psutil.Process, main: bool = False) -> float:
+    """Processor time of all threads of a process, or of the main one [ms], to the nanosecond where the system tells."""
     threads = Path(f"/proc/{process.pid}/task")
     if not threads.is_dir():
         times = process.cpu_times()
         return 1000.0 * float(times.user + times.system)
-    return sum(int((thread / "schedstat").read_text().split()[0]) for thread in threads.iterdir()) / 1e6
+    counted = [threads / str(process.pid)] if main else threads.iterdir()
+    return sum(int((thread / "schedstat").read_text().split()[0]) for thread in counted) / 1e6
 
 
 def parts(stats: dict[str, Any], count: int) -> str:
@@ -162,6 +164,7 @@ def drag(watched: Watched, playing: bool, count: int) -> None:
     how = "while it plays" if playing else "paused"
     show(f"a drag {how}: processor, server + page", f"{middle['server']:.0f} + {middle['page']:.0f} ms", "<= 150 ms")
     show(f"a drag {how}: all processor time by moves", f"{whole['server']:.0f} + {whole['page']:.0f} ms", "<= 150 ms")
+    show(f"a drag {how}: of the page its main thread, not compositing", f"{middle['scripts']:.0f} ms", "none")
     show(f"a drag {how}: processor of the software renderer", f"{middle['renderer']:.0f} ms", "none")
     show(f"a drag {how}: to the frame with it, here", f"{statistics.median(waits):.0f} ms", "none: load counts")
     show(f"a drag {how}: decode + colour + upload, median", took, "<= 12 ms together")

@@ -57,6 +57,24 @@ def test_an_empty_page_is_drawn_on_and_rests_as_the_scene_does():
     assert np.allclose(np.unique(mesh.vertices[:, 0]), [0, 1, 2, 3, 4])
 
 
+def test_points_within_the_weld_distance_are_the_particles_that_are_there():
+    """A second square whose points are 1 mm beside two corners of the first one, and one of its points given twice: 6
+    particles in all, and its springs and faces are on them as those without rounding would be. A particle counts where
+    it is now. Without the distance there are 9."""
+    for weld, count in ((0.002, 6), (0.0, 9)):
+        drawn = sheet()
+        drawn.patch({"pin": [{"particles": [2], "targets": [[4.0, 4.0, 1.0]]}]})
+        points = [[4.001, 0, 0], [8, 0, 0], [8, 4, 0], [4, 3.999, 1], [8, 0, 0.001]]
+        tie = {"kind": "springs", "name": "tie", "particles": [[4, 7], [8, 0]]}
+        drawn.draw({"add": {"points": points, "weld": weld, "faces": {"next": [[4, 5, 6, 7]]}, "forces": [tie]}})
+        assert drawn.system.slots.count == count
+        ends, corners = (drawn.scene.forces[1].particles, drawn.system.places.vertices("next"))
+        assert ends.tolist() == ([[1, 2], [4, 0]] if weld else [[4, 7], [8, 0]])
+        assert corners.tolist() == ([1, 2, 4, 5] if weld else [4, 5, 6, 7])
+    with pytest.raises(InputError, match="particle 9 does not exist; there are 9"):
+        sheet().draw({"add": {"points": points, "weld": 0.002, "faces": {"next": [[4, 5, 9]]}}})
+
+
 def test_springs_that_are_drawn_alike_are_one_force_and_each_is_undone_alone():
     drawn = lines(stiffness=30.0)
     [rope] = drawn.scene.forces

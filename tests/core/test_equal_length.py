@@ -71,5 +71,5 @@ def test_a_stiff_line_has_more_weight_in_the_mean() -> None:
 
 
 def test_numbers_of_groups_are_one_for_each_line() -> None:
-    with pytest.raises(InputError, match="/forces/0/group: 3 values for 2 elements"):
+    with pytest.raises(InputError, match="/forces/0/group: 3 values for 2 elements; give one for each"):
         chain([0.0, 1.0, 3.0], group=[1, 1, 1])

@@ -311,6 +311,39 @@ def test_curves_guide_the_rim(draw: Callable[..., Any]) -> None:
     assert "nothing becomes springs or a membrane" in draft(model, {"rows": rows}).fault
 
 
+def test_surfaces_guide_all_particles_of_a_layer_or_those_nearest(draw: Callable[..., Any]) -> None:
+    """Two squares of 1 m between two level plates: one reaches over their left corners, 0.25 m above, one over the
+    right ones, 0.5 m below. A pull is the strength of 10 N/m times the distance to a plate or, 0.875 m beside, to its
+    edge."""
+
+    def plate(left: float, right: float, z: float) -> Mesh:
+        corners = [[left, -1.0, z], [right, -1.0, z], [right, 4.0, z], [left, 4.0, z]]
+        return Mesh(np.array(corners), SQUARE.faces)
+
+    second = Mesh(SQUARE.vertices + [0.0, 1.2, 0.0], SQUARE.faces)
+    plates = {"left": plate(-1.0, 0.125, 0.25), "right": plate(0.875, 2.0, -0.5)}
+    nets = {"first": SQUARE, "second": second}
+    model = draw(*(NewObject(mesh, layer) for layer, mesh in {**nets, **plates}.items()))
+
+    def choices(**values: Any) -> dict[str, Any]:
+        of = {**dict.fromkeys(nets, ("net", {"held": "nothing"}))}
+        of |= dict.fromkeys(plates, ("guide", {"strength": 10.0, **values}))
+        return {"rows": [{"layer": n, "family": "surfaces", "role": r, "values": v} for n, (r, v) in of.items()]}
+
+    def pulls(**values: Any) -> Any:
+        found = draft(model, choices(**values))
+        assert (found.fault, found.rows[2].becomes, found.rows[3].becomes) == ("", ["1 guide"], ["1 guide"])
+        scene = understand(model, json.loads(json.dumps(found.recipe))).built.scene
+        pull, first = (start(scene.replaced(forces=forces)) for forces in (scene.forces, scene.forces[:2]))
+        return (pull - first)[:, 3:6].round(12).tolist()
+
+    nearest, none, both = [[0, 0, 2.5], [0, 0, -5]], [[0, 0, 0], [0, 0, 0]], [[8.75, 0, -2.5], [-8.75, 0, -2.5]]
+    assert pulls(pulls="nearest") == 4 * nearest
+    assert pulls(pulls="nearest edges", layer="first") == 2 * nearest + 2 * none
+    assert pulls(pulls="all", layer="second") == 2 * none + 2 * both
+    assert "finds no object; its layers with visible objects are" in draft(model, choices(layer="third")).fault
+
+
 def test_a_shell_is_a_membrane_without_prestress_and_its_bending(draw: Callable[..., Any]) -> None:
     model = draw(NewObject(SQUARE, "skin"))
     rows = [{"layer": "skin", "family": "surfaces", "role": "shell", "values": {"bending": 7}}]

@@ -17,6 +17,7 @@ import pytest
 
 import hookean
 from hookean.discretize import grid, naked_vertices
+from hookean.files import project
 from serving import wait_for
 
 from .browser import LAPTOP, Studio
@@ -172,6 +173,23 @@ def test_a_recording_is_scrubbed_charted_and_saved(studio: Studio, tmp_path: Pat
     page.get_by_text(count).wait_for()
     page.get_by_role("list", name="Bookmarks").get_by_role("button", name="flat", exact=True).click()
     studio.until(lambda: np.abs(studio.particles() - start).max() < 1e-4)
+
+    unfold(studio, "Out")  # a file has both, too, beside what other programs read in it
+    with page.expect_download() as saving:
+        studio.press("Save")
+    file = tmp_path / "recorded.hookean"
+    saving.value.save_as(file)
+    assert len(project.read(file.read_bytes()).simulation.result().particles) == len(start)
+    page.get_by_role("link", name="All sessions").click()
+    page.get_by_label("File to open").set_input_files(file)
+    page.wait_for_url(lambda url: re.search(r"#s=[0-9a-f]{32}$", url) is not None and key not in url)
+    studio.drawing()
+    unfold(studio, "Time")
+    page.get_by_text(count).wait_for()
+    page.get_by_role("list", name="Bookmarks").get_by_role("button", name="flat", exact=True).click()
+    studio.until(lambda: np.abs(studio.particles() - start).max() < 1e-4)
+    service.client.delete(f"/v1/sessions/{studio.key}")
+    studio.open(key)
 
 
 def test_nothing_here_is_hard_to_reach(studio: Studio):

@@ -186,3 +186,52 @@ def test_springs_between_the_selected_get_a_force(sheet: Studio) -> None:
     page.get_by_role("button", name="Add constant tension", exact=True).click()
     sheet.until(lambda: len(sheet.service.scene(sheet.key)["forces"]) == 3)
     assert len(sheet.service.scene(sheet.key)["forces"][-1]["particles"]) == 7
+
+
+def middle(studio: Studio, face: list[int]) -> tuple[float, float]:
+    """Where the middle of a face is seen from above [CSS pixels]."""
+    x, y = np.mean([studio.seen(corner) for corner in face], axis=0)
+    return float(x), float(y)
+
+
+def test_single_faces_are_selected_and_get_a_force(sheet: Studio) -> None:
+    """Two of 4 x 4 faces by clicks, their strip and the one across, 2 x 2 by a box; pressure and then area weight act
+    on these four alone, which become one mesh; each addition is undone by itself."""
+    page, service = sheet.page, sheet.service
+
+    def faces(number: int) -> None:
+        page.get_by_text(re.compile(f"^{number} faces selected. Click a face")).wait_for()
+
+    page.get_by_label("Faces", exact=True).check()
+    for face in ([6, 7, 11, 12], [7, 8, 12, 13]):
+        page.mouse.click(*middle(sheet, face))
+    faces(2)
+    sheet.press("Strip")
+    faces(SIDE - 1)
+    sheet.press("Strip across")
+    faces(SIDE - 1)
+    page.get_by_label("Face numbers").fill("3 99")
+    page.keyboard.press("Enter")
+    page.get_by_text("There is no face 99; the model has 16, counted from 0.").wait_for()
+    sheet.press("Box")
+    corners = around(sheet, 6, 18)
+    drag(sheet, corners[0], corners[2])
+    faces(4)
+    page.get_by_text("Add a force of any kind").click()
+    for kind in ("Pressure", "Area weight"):
+        page.get_by_label("Kind").select_option(label=kind)
+        assert page.get_by_label("On", exact=True).input_value() == "faces"  # the usual place while faces are selected
+        page.get_by_role("button", name=f"Add {kind.lower()}", exact=True).click()
+        sheet.until(lambda kind=kind: service.scene(sheet.key)["forces"][-1]["name"] == kind.lower())
+    scene = service.scene(sheet.key)
+    assert [force["mesh"] for force in scene["forces"][-2:]] == ["pressure", "pressure"]
+    mesh = scene["meshes"]["pressure"]
+    drawn = np.array(mesh["vertices"])[np.array(mesh["faces"])]
+    assert sorted(map(tuple, drawn.mean(axis=1).tolist())) == [(x, y, 0) for x in (1.5, 2.5) for y in (1.5, 2.5)]
+    sheet.press("Undo")
+    sheet.until(lambda: service.scene(sheet.key)["forces"][-1]["kind"] == "pressure")
+    sheet.press("Undo")
+    sheet.until(lambda: "pressure" not in service.scene(sheet.key)["meshes"])
+    faces(4)
+    sheet.press("Their edge")
+    counts(sheet, 8)

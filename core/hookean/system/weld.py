@@ -16,7 +16,7 @@ from hookean.forces.base import PLACES, lengths
 from hookean.scene.report import Missed, Report, Unmatched
 from hookean.scene.scene import Scene
 from hookean.values import materials, near
-from hookean.values.columns import Vector, Vectors
+from hookean.values.columns import Labels, Points, Vector, Vectors
 from hookean.values.materials import Material
 from hookean.values.mesh import Mesh
 from hookean.values.sections import Section
@@ -317,7 +317,7 @@ def weld(given: Floats, points: Floats, tolerance: float) -> tuple[Floats, Ints]
     met = near.first(merged[:count], merged[count:], tolerance)
     alone = count + np.flatnonzero(met < 0)
     keeper[count:][met >= 0] = met[met >= 0]
-    keeper[alone] = alone[_keepers(merged[alone], tolerance)]
+    keeper[alone] = alone[keepers(merged[alone], tolerance)]
     kept = keeper == np.arange(len(merged))
     number = np.cumsum(kept) - 1
     return np.ascontiguousarray(merged[kept]), number[keeper][count + rank[inverse]]
@@ -339,7 +339,7 @@ def _bound(tolerance: float) -> float:
     return max(tolerance * 1.001, 1e-150)
 
 
-def _keepers(points: Floats, tolerance: float) -> Ints:
+def keepers(points: Floats, tolerance: float) -> Ints:
     """For each of some distinct points the one it becomes: itself, or the first kept point within the tolerance.
 
     Kept points are farther apart than the tolerance, so that few of them are near any one point.
@@ -367,9 +367,8 @@ def fits(force: Force, pointer: str, welded: Welded) -> None:
     for name, vector in columns:
         value = getattr(force, name)
         if isinstance(value, np.ndarray) and len(value) != count and not (vector and value.shape == (3,)):
-            raise InputError(
-                f"{pointer}/{name}", f"{len(value)} values for {count} elements; give one value or one for each"
-            )
+            allowed = "one for each" if _is_a(type(force), name, _EACH) else "one value or one for each"
+            raise InputError(f"{pointer}/{name}", f"{len(value)} values for {count} elements; give {allowed}")
 
 
 @cache
@@ -384,9 +383,15 @@ def element_columns(cls: type[Force]) -> list[tuple[str, bool]]:
 
 def takes_a_vector(cls: type[Force], field: str) -> bool:
     """Whether a column's type is `Vector` or `Vectors`, so that three numbers are one value."""
+    return _is_a(cls, field, _ONE_VECTOR)
+
+
+def _is_a(cls: type[Force], field: str, kinds: tuple[Any, ...]) -> bool:
+    """Whether a column's type has one of these validators."""
     column: FieldInfo = cls.model_fields[field]
     marks = [*column.metadata, *(mark for option in get_args(column.annotation) for mark in get_args(option)[1:])]
-    return any(mark is kind for mark in marks for kind in _ONE_VECTOR)
+    return any(mark is kind for mark in marks for kind in kinds)
 
 
+_EACH = (get_args(Labels)[1], get_args(Points)[1])  # of columns that have no one value for all
 _ONE_VECTOR = (get_args(Vector)[1], get_args(Vectors)[1])

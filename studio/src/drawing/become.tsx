@@ -3,6 +3,7 @@ import type { Signal } from "@preact/signals";
 import type { Kind, SceneForce, Units } from "../model";
 import { Input, PLACES, valuesOf } from "../ui/addforce";
 import { kinds } from "../ui/catalogue";
+import { usual } from "../ui/usual";
 import { titled, unit } from "../ui/words";
 
 /** A kind by its name, or "" for nothing, with what was typed into its fields. */
@@ -23,23 +24,6 @@ export function kindsOf(of: Of): Kind[] {
       ? kind.particles_per_element === 2 && has(kind, "particles") && kind.role === "internal"
       : has(kind, "mesh") && (kind.role === "internal" || kind.kind === "pressure"),
   );
-}
-
-const METRES: Record<string, number> = {
-  ...{ m: 1, mm: 1e-3, cm: 1e-2, dm: 0.1, km: 1e3 },
-  ...{ in: 0.0254, ft: 0.3048, yd: 0.9144 },
-};
-const NEWTONS: Record<string, number> = {
-  ...{ N: 1, kN: 1e3, MN: 1e6 },
-  ...{ kgf: 9.80665, lbf: 4.4482216152605, kip: 4448.2216152605 },
-};
-
-/** Values to begin with, where the schema has none that serves: a cloth of 600 kN/m with 2 kN/m of prestress. */
-export function usual(kind: string, units: Units): Record<string, string> {
-  const perWidth = (value: number) =>
-    String(Number(((value * (METRES[units.length] ?? 1)) / (NEWTONS[units.force] ?? 1)).toPrecision(3)));
-  if (kind === "membrane") return { warp_stiffness: perWidth(600e3), prestress: `${perWidth(2e3)} ${perWidth(2e3)} 0` };
-  return {};
 }
 
 /** The force, without its place; a sentence where a field is wrong; null for nothing. */

@@ -5,6 +5,7 @@ import { refuse, tell } from "../ui/notices";
 import { NumberField } from "../ui/number";
 import type { Studio } from "../ui/studio";
 import { counted } from "../ui/words";
+import { numbersOf, present, rimOf } from "../view/faces";
 import { naked } from "../view/sets";
 import type { Pen } from "./pen";
 
@@ -18,6 +19,8 @@ interface Chosen {
 
 /** What is picked or selected: particles, springs and faces all of whose corners are selected, edges to extrude. */
 export function chosenOf({ options }: Studio, topology: Topology): Chosen {
+  const own = present(topology, options.element.value === "faces" ? options.markedFaces.value : []);
+  if (own.length) return { particles: [], springs: [], faces: numbersOf(topology, own), edges: rimOf(own) };
   const picked = options.picked.value;
   if (picked?.kind === "spring") {
     const pair = topology.springs[picked.index];
@@ -31,8 +34,8 @@ export function chosenOf({ options }: Studio, topology: Topology): Chosen {
     const found = mesh.faces.flatMap((face, i) => (all(face) ? [i] : []));
     if (found.length) faces[name] = found;
   }
-  const own = Object.values(topology.meshes).flatMap((mesh) => mesh.faces);
-  const edges = springs.length ? springs.map((i) => topology.springs[i]!) : naked(own).filter(all);
+  const drawn = Object.values(topology.meshes).flatMap((mesh) => mesh.faces);
+  const edges = springs.length ? springs.map((i) => topology.springs[i]!) : naked(drawn).filter(all);
   return { particles: [...marked], springs, faces, edges: distinct(edges as [number, number][]) };
 }
 

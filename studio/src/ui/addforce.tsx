@@ -3,8 +3,10 @@ import { useSignal } from "@preact/signals";
 import type { Field, Kind, SceneForce } from "../model";
 import { kinds } from "./catalogue";
 import { choose, freeName, useEdit } from "./loads";
-import { type Where, placed, places } from "./targets";
+import { present } from "../view/faces";
+import { type Where, onFaces, placed, places } from "./targets";
 import type { Studio } from "./studio";
+import { usual } from "./usual";
 import { titled, unit } from "./words";
 
 const ROLES: [string, string][] = [
@@ -27,18 +29,20 @@ export function AddForce({ studio }: { studio: Studio }) {
   const { busy, make } = useEdit(session);
   const kind = kinds.value?.get(name.value);
   if (!topology || !scene || !kind) return null;
-  const open = places(kind, topology);
+  const faces = present(topology, options.markedFaces.value);
+  const open = places(kind, topology, faces);
   const where = open.some(([place]) => place === chosen.value) ? (chosen.value as Where) : open[0]?.[0];
   const fields = kind.fields.filter((field) => !PLACES.includes(field.name));
   const add = async (event: Event) => {
     event.preventDefault();
-    const at = where ? placed(where, kind, { session, options, numbers: numbers.value }) : {};
+    const at = where && where !== "faces" ? placed(where, kind, { session, options, numbers: numbers.value }) : {};
     const values = typeof at === "string" ? at : valuesOf(fields, typed.value);
     fault.value = typeof values === "string" ? values : "";
     if (typeof at === "string" || typeof values === "string") return;
     const force = { kind: kind.kind, name: freeName(scene, kind.title.toLowerCase()), ...at, ...values } as SceneForce;
-    if (await make({ add: [force] }, `${kind.title} was added; Undo takes it back.`)) {
-      typed.value = {};
+    const edit = where === "faces" ? onFaces(topology, faces, force) : { add: [force] };
+    if (await make(edit, `${kind.title} was added; Undo takes it back.`)) {
+      typed.value = usual(kind.kind, topology.units);
       options.marked.value = ((at["particles"] ?? []) as number[] | number[][]).flat();
       choose(force.name);
     }
@@ -57,7 +61,7 @@ export function AddForce({ studio }: { studio: Studio }) {
             title={kind.summary}
             onChange={(event) => {
               name.value = event.currentTarget.value;
-              [typed.value, fault.value] = [{}, ""];
+              [typed.value, fault.value] = [usual(name.value, topology.units), ""];
             }}
           >
             {ROLES.map(([role, seen]) => (
@@ -107,7 +111,7 @@ export function AddForce({ studio }: { studio: Studio }) {
           <label key={`${kind.kind} ${field.name}`} class="field" title={field.description}>
             <span>{titled(field.name)}</span>
             <Input
-              field={field.name === "target" ? { ...field, choices: Object.keys(topology.meshes) } : field}
+              field={field.name === "target" ? { ...field, choices: Object.keys(scene["meshes"] ?? {}) } : field}
               value={typed.value[field.name] ?? ""}
               put={(text) => (typed.value = { ...typed.value, [field.name]: text })}
             />

@@ -22,7 +22,9 @@ export function Choice({ name, seen, value, choices, hint, disabled, done }: Tol
         onChange={(event) => done(event.currentTarget.value)}
       >
         {choices.map((one) => (
-          <option key={one}>{one}</option>
+          <option key={one} value={one}>
+            {one || "all"}
+          </option>
         ))}
       </select>
     </label>

@@ -18,7 +18,9 @@ export function Entry() {
         }}
       >
         <label>
-          Token (<code>hookean token</code> prints it)
+          <span>
+            Token (<code>hookean token</code> prints it)
+          </span>
           <input
             type="password"
             autocomplete="off"

@@ -6,7 +6,7 @@ import type { Session } from "../session";
 import type { Place } from "../view/camera";
 import type { Options } from "../view/types";
 import { numbers, placed } from "../view/memory";
-import { formOf, keepReel, keptReel } from "./reel";
+import { type Reel, formOf, keepReel, keptReel } from "./reel";
 import { measured } from "./words";
 
 export interface Shot {
@@ -173,11 +173,21 @@ export class Film {
   /** Have this browser keep it. */
   private save(): void {
     if (!this.form || this.session.readOnly) return;
+    void keepReel(this.session.key, this.whole()).then((isKept) => (this.kept.value = isKept));
+  }
+
+  private whole(): Reel {
     const { form, stride, shots } = this;
     const bookmarks = this.bookmarks.peek().map(({ name, frame, place }) => {
       return { name, frame, place: place && numbers(place) };
     });
-    void keepReel(this.session.key, { form, stride, shots, bookmarks }).then((isKept) => (this.kept.value = isKept));
+    return { form, stride, shots, bookmarks };
+  }
+
+  /** What was recorded, for a file; null for nothing. */
+  reel(): Reel | null {
+    const found = this.whole();
+    return found.shots.length || found.bookmarks.length ? found : null;
   }
 
   /** What this browser has kept of this form, unless something was recorded meanwhile. */

@@ -2,12 +2,13 @@
 import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import * as api from "../api";
-import type { Parameters } from "../model";
+import type { Field, Parameters } from "../model";
 import { Choice } from "./choice";
 import { families, knowFamilies, seenOf } from "./families";
 import { refuse } from "./notices";
 import { NumberField } from "./number";
 import { go, met } from "./place";
+import { inUnits } from "./usual";
 
 export const LENGTHS = ["m", "cm", "mm", "ft", "in"];
 export const FORCES = ["N", "kN"];
@@ -25,11 +26,15 @@ export function New() {
   if (!families.value) return null;
   const family = families.value.find(({ name }) => name === chosen.value);
   const summary = family?.summary ?? EMPTY;
+  // the same size in every unit
+  const valueOf = ({ name, default: usually, unit }: Field) =>
+    typed.value[name] ?? (typeof usually === "number" ? inUnits(usually, unit, units.value) : String(usually));
   const make = async (event: Event) => {
     event.preventDefault();
     busy.value = true;
+    const values = Object.fromEntries((family?.parameters ?? []).map((field) => [field.name, valueOf(field)]));
     try {
-      const scene = family ? await api.familyScene(family.name, units.value, typed.value) : { units: units.value };
+      const scene = family ? await api.familyScene(family.name, units.value, values) : { units: units.value };
       go((await api.create(scene, family?.title ?? "Drawing")).key);
     } catch (error) {
       met(error);
@@ -74,7 +79,7 @@ export function New() {
         ))}
         {family?.parameters.map((field) => {
           const { seen, ...told } = seenOf(field, units.value);
-          const value = typed.value[field.name] ?? (field.default as number | string);
+          const value = valueOf(field);
           const key = `${family.name} ${field.name}`;
           const done = (to: number | string | null) => to !== null && take(field.name, to);
           if (typeof value === "string")

@@ -32,6 +32,12 @@ export function tell(sentence: string, details: string[] = []): void {
   if (!details.length) setTimeout(() => notice.value === done && quiet(), SEEN);
 }
 
+/** Show that a file is open, with the notes on it; what the page itself shows with a repair is left out. */
+export function tellOpen(name: string, warnings: string[] = []): void {
+  const notes = warnings.filter((sentence) => sentence !== "nothing is held");
+  if (notes.length) tell(`${name} is open. Notes on the file:`, notes);
+}
+
 export const quiet = () => (notice.value = null);
 
 export function Notices() {

@@ -4,8 +4,10 @@ import { useEffect, useRef } from "preact/hooks";
 import * as api from "../api";
 import { viewOf } from "../view/kept";
 import { keepSeen } from "./looked";
-import { quiet, refuse, tell } from "./notices";
+import { quiet, refuse, tellOpen } from "./notices";
 import { go, met } from "./place";
+import { keepReel } from "./reel";
+import { reelOf } from "./reelfile";
 import { drafted } from "./sheetstate";
 
 const over = signal(false);
@@ -20,11 +22,12 @@ async function openFile(file: File): Promise<void> {
   quiet();
   try {
     if (/\.(3dm|obj|json)$/i.test(file.name) && (await drafted(file))) return;
-    const made = await api.open(file);
+    const { reel, model } = await reelOf(file);
+    const made = await api.open(model);
+    if (reel) await keepReel(made.key, reel);
     keepSeen(made.key, await viewOf(file));
     go(made.key);
-    const warnings = made.warnings ?? [];
-    if (warnings.length) tell(`${file.name} is open. Notes on the file:`, warnings);
+    tellOpen(file.name, made.warnings);
   } catch (error) {
     met(error);
     refuse(error, `${file.name} was not opened. `);

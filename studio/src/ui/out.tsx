@@ -9,6 +9,7 @@ import { barOf, picture, sizeOf, svg } from "./drawing";
 import { refuse } from "./notices";
 import { linkTo, met } from "./place";
 import { fitting, keptRecipe } from "./kept";
+import { withReel } from "./reelfile";
 import { seenNow, Share } from "./share";
 import type { Studio } from "./studio";
 import { dark } from "./theme";
@@ -19,7 +20,7 @@ const FILES: { format: api.Format; seen: string; ending: string; hint: string }[
     format: "hookean",
     seen: "Save",
     ending: ".hookean",
-    hint: "The whole model in one file: scene, present shape and view; opens here, in hookean relax and in Python",
+    hint: "The whole model: scene, shape, view, recording, bookmarks; opens here, in hookean relax and in Python",
   },
   {
     format: "scene",
@@ -118,7 +119,8 @@ export function OutPanel({ studio, title }: { studio: Studio; title: string }) {
     const seen = now && { ...now, ...(recipe && { recipe }) };
     const kept = seen && fitting(seen, studio.design.problem.value);
     const made = await api.exported(session.key, format, kept?.view);
-    return { ...made, notes: [...made.notes, ...(kept?.notes ?? [])] };
+    const blob = format === "hookean" ? await withReel(made.blob, studio.film.reel()) : made.blob;
+    return { blob, notes: [...made.notes, ...(kept?.notes ?? [])] };
   };
   const take = async (seen: string, file: string, made: () => Promise<{ blob: Blob; notes: string[] }>) => {
     busy.value = seen;

@@ -3,7 +3,7 @@ import { useSignal } from "@preact/signals";
 import { useRef } from "preact/hooks";
 import * as api from "../api";
 import { keepRecipe, keptRecipe } from "./kept";
-import { refuse, tell } from "./notices";
+import { refuse, tellOpen } from "./notices";
 import { go, met } from "./place";
 import type { Studio } from "./studio";
 
@@ -45,7 +45,7 @@ export function RecipeKept({ studio: { session } }: { studio: Studio }) {
       const made = await api.open(file, text.value);
       keepRecipe(made.key, { file: file.name, text: compact(text.value) });
       go(made.key);
-      if (made.warnings?.length) tell(`${file.name} is open. Notes on the file:`, made.warnings);
+      tellOpen(file.name, made.warnings);
     } catch (error) {
       met(error);
       refuse(error, `${file.name} was not opened. `);

@@ -2,27 +2,63 @@
 import { useSignal } from "@preact/signals";
 import type { Anchor, Point, Scene, Topology } from "../model";
 import { between, endsOf, rim, row } from "../view/sets";
-import type { Tool } from "../view/types";
+import type { Element } from "../view/types";
 import { kinds } from "./catalogue";
 import { Choice } from "./choice";
 import { titleOf } from "./forces";
 import { Groups } from "./groups";
 import { useEdit } from "./loads";
 import { NumberField } from "./number";
+import { SelectedFaces } from "./selectedfaces";
+import { enclosedBy } from "./selecting";
 import { Stiffen } from "./stiffen";
 import type { Studio } from "./studio";
 import { counted, titled } from "./words";
 
-const TOOLS: [Tool, string, string][] = [
-  ["box", "Box", "Drag a box on the canvas; Shift adds, Alt takes away"],
-  ["lasso", "Lasso", "Draw a line around particles on the canvas; Shift adds, Alt takes away"],
+const ELEMENTS: [Element, string, string][] = [
+  ["particles", "Particles", "A click picks a particle or a spring"],
+  ["faces", "Faces", "A click selects a face or takes it out of the selection"],
 ];
 const AXES = ["xyz", "xy", "xz", "yz", "x", "y", "z"];
 
 export function Selected({ studio }: { studio: Studio }) {
-  const { options, session } = studio;
-  const topology = session.topology.value;
+  const { options } = studio;
+  const topology = studio.session.topology.value;
   if (!topology) return null;
+  return (
+    <details
+      class="seldom"
+      onToggle={(event) => {
+        if (!event.currentTarget.open) options.element.value = "particles"; // so that clicks pick particles again
+      }}
+    >
+      <summary title="By a box, a line around them, a part or a range of forces; then hold, move or name them">
+        Select several
+      </summary>
+      <div class="row choices" role="radiogroup" aria-label="What to select">
+        {ELEMENTS.map(([element, seen, hint]) => (
+          <label key={element} title={hint}>
+            <input
+              type="radio"
+              name="element"
+              checked={options.element.value === element}
+              onChange={() => (options.element.value = element)}
+            />
+            {seen}
+          </label>
+        ))}
+      </div>
+      {options.element.value === "faces" ? (
+        <SelectedFaces studio={studio} />
+      ) : (
+        <SelectedParticles studio={studio} topology={topology} />
+      )}
+    </details>
+  );
+}
+
+function SelectedParticles({ studio, topology }: { studio: Studio; topology: Topology }) {
+  const { options, session } = studio;
   const chosen = options.marked.value.filter((particle) => particle < topology.particles);
   const choose = (particles: number[]) => ([options.picked.value, options.marked.value] = [null, particles]);
   const all = Array.from({ length: topology.particles }, (_, i) => i);
@@ -38,23 +74,9 @@ export function Selected({ studio }: { studio: Studio }) {
     </button>
   );
   return (
-    <details class="seldom">
-      <summary title="By a box, a line around them, a part or a range of forces; then hold, move or name them">
-        Select several
-      </summary>
+    <>
       <div class="row" role="group" aria-label="Ways to select">
-        {TOOLS.map(([tool, seen, hint]) => (
-          <button
-            key={tool}
-            type="button"
-            class="small"
-            title={hint}
-            aria-pressed={options.tool.value === tool}
-            onClick={() => (options.tool.value = options.tool.value === tool ? "none" : tool)}
-          >
-            {seen}
-          </button>
-        ))}
+        {enclosedBy(options)}
         {button("Row", "All springs that go on straight from the picked one", along, picked?.kind === "spring")}
         {button(
           "Edge loop",
@@ -75,7 +97,7 @@ export function Selected({ studio }: { studio: Studio }) {
       {!session.readOnly && <Acts studio={studio} chosen={chosen} />}
       {!session.readOnly && <Stiffen studio={studio} chosen={chosen} />}
       {!session.readOnly && <Groups studio={studio} chosen={chosen} choose={choose} />}
-    </details>
+    </>
   );
 }
 

@@ -1,6 +1,8 @@
 // Over the canvas while particles are selected by a box or a line around them.
 import { useSignal } from "@preact/signals";
 import { type Place, box } from "../view/sets";
+import { joined } from "../view/faces";
+import type { Options, Tool } from "../view/types";
 import type { Studio } from "./studio";
 
 const APART = 4;
@@ -28,6 +30,13 @@ export function Selecting({ studio: { options, view } }: { studio: Studio }) {
     const drawn = outline(tool, line.value);
     line.value = [];
     if (drawn.length < 3) return;
+    if (options.element.value === "faces") {
+      const faces = view.value?.facesInside(drawn) ?? [];
+      const isAdded = !event.altKey;
+      const kept = event.shiftKey || event.altKey ? options.markedFaces.value : [];
+      options.markedFaces.value = joined(kept, faces, isAdded);
+      return;
+    }
     const found = view.value?.inside(drawn) ?? [];
     const before = new Set(options.marked.value);
     if (event.shiftKey) found.forEach((particle) => before.add(particle));
@@ -53,3 +62,23 @@ export function Selecting({ studio: { options, view } }: { studio: Studio }) {
 
 const outline = (tool: string, line: Place[]) =>
   tool === "box" && line.length === 2 ? box(line[0]!, line[1]!) : tool === "box" ? [] : line;
+
+const TOOLS: [Tool, string, string][] = [
+  ["box", "Box", "Drag a box on the canvas; Shift adds, Alt takes away"],
+  ["lasso", "Lasso", "Draw a line on the canvas around what to select; Shift adds, Alt takes away"],
+];
+
+/** The buttons of these tools. */
+export const enclosedBy = (options: Options) =>
+  TOOLS.map(([tool, seen, hint]) => (
+    <button
+      key={tool}
+      type="button"
+      class="small"
+      title={hint}
+      aria-pressed={options.tool.value === tool}
+      onClick={() => (options.tool.value = options.tool.value === tool ? "none" : tool)}
+    >
+      {seen}
+    </button>
+  ));

@@ -6,7 +6,7 @@ import type { Draft } from "../model";
 import { Choice } from "./choice";
 import { FORCES, LENGTHS } from "./new";
 import { keepRecipe } from "./kept";
-import { tell } from "./notices";
+import { tellOpen } from "./notices";
 import { NumberField } from "./number";
 import { go, met } from "./place";
 import { compact, saveRecipe } from "./recipe";
@@ -50,8 +50,7 @@ function Foot({ found, shown }: { found: Draft; shown: File }) {
       keepRecipe(made.key, { file: shown.name, text: compact(recipe.value) });
       close();
       go(made.key);
-      const warnings = made.warnings ?? [];
-      if (warnings.length) tell(`${shown.name} is open. Notes on the file:`, warnings);
+      tellOpen(shown.name, made.warnings);
     } catch (error) {
       met(error);
       refused.value = plain(error instanceof Error ? error.message : String(error));

@@ -151,7 +151,7 @@ function Fields({ of, values, done, ...told }: Told & { of: string; values: Valu
               name={name}
               seen={seen}
               value={value}
-              choices={field.choices ?? []}
+              choices={field.choices ?? ["", ...new Set(told.draft.rows.map(({ layer }) => layer).filter(Boolean))]}
               hint={more.hint}
               done={set}
             />

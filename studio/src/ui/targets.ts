@@ -1,16 +1,22 @@
 // On what a force is put: particles, pairs and rows of particles, or a mesh, as its kind has elements.
-import type { Kind, Topology } from "../model";
+import type { Kind, Patch, SceneForce, Topology } from "../model";
 import type { Session } from "../session";
+import { meshOf } from "../view/faces";
 import type { Options } from "../view/types";
 
-export type Where = "free" | "all" | "picked" | "numbers" | "springs" | `mesh ${string}`;
+export type Where = "faces" | "free" | "all" | "picked" | "numbers" | "springs" | `mesh ${string}`;
 
 export const PER_MESH = "mesh ";
 
 const has = (kind: Kind, name: string) => kind.fields.some((field) => field.name === name);
 
 /** The places a kind of force may have in a scene, with their names; the first is the usual one. */
-export function places(kind: Kind, topology: Topology): [Where, string][] {
+export function places(kind: Kind, topology: Topology, faces: number[][]): [Where, string][] {
+  const own: [Where, string][] = has(kind, "mesh") && faces.length ? [["faces", "Selected faces"]] : [];
+  return [...own, ...others(kind, topology)];
+}
+
+function others(kind: Kind, topology: Topology): [Where, string][] {
   const meshes = has(kind, "mesh")
     ? Object.keys(topology.meshes).map((name): [Where, string] => [`${PER_MESH}${name}`, `Mesh ${name}`])
     : [];
@@ -45,6 +51,16 @@ export function placed(
     return `${flat.length} particles given; ${kind.title} needs ${per} for each element, in their order.`;
   if (per === 1) return { particles: flat };
   return { particles: Array.from({ length: flat.length / per }, (_, row) => flat.slice(per * row, per * (row + 1))) };
+}
+
+/** The edit that puts a force on faces: on the mesh that they are, or on a new one of the force's name. */
+export function onFaces(topology: Topology, faces: number[][], force: SceneForce): Patch {
+  const known = meshOf(topology, faces);
+  if (known !== null) return { add: [{ ...force, mesh: known }] };
+  let mesh = force.name;
+  for (let n = 2; mesh in topology.meshes; n++) mesh = `${force.name} ${n}`;
+  const rows = faces.map((face) => (face.length === 3 ? [...face, face[2]!] : face));
+  return { draw: { add: { faces: { [mesh]: rows }, forces: [{ ...force, mesh }] } } };
 }
 
 function particlesAt(where: Where, session: Session, options: Options): number[] {

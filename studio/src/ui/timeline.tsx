@@ -20,7 +20,7 @@ export function Timeline({ studio, title }: { studio: Studio; title: string }) {
           type="button"
           aria-pressed={isRecording}
           disabled={!live && !isRecording}
-          title="Keep each frame that arrives, as long as the session. Long recordings are thinned to 96 MB"
+          title="Keep each frame that arrives, here and in saved .hookean files. Long recordings are thinned to 96 MB"
           onClick={() => (isRecording ? film.stop() : film.record())}
         >
           {isRecording ? "Stop recording" : "Record"}
@@ -127,7 +127,7 @@ function Bookmarks({ studio: { film, view } }: { studio: Studio }) {
           value={name.value}
           onInput={(event) => (name.value = event.currentTarget.value)}
         />
-        <button type="submit" title="Keep the shape that is shown and the view, in this browser">
+        <button type="submit" title="Keep the shape that is shown and the view, here and in saved .hookean files">
           Bookmark
         </button>
       </form>

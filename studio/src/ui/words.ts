@@ -47,6 +47,9 @@ export const plain = (sentence: string) =>
     .replace(IDS, "")
     .replace(/^\/(?:family|rebuild): (.)/, (_, first: string) => first.toUpperCase())
     .replace(/^\/(?:rebuild\/)?([a-z]\w*): /, (_, field: string) => `${titled(field)}: `)
+    .replace(/^\/(?:draw\/)?add\/(?:forces\/)?\d+(?:\/(\w+))?: (.)/, (_, field: string | undefined, first: string) =>
+      field ? `${titled(field)}: ${first}` : first.toUpperCase(),
+    )
     .replace(/\/settings\/(\w+)/g, (_, name: string) => `the ${name.replaceAll("_", " ")}`)
     .replace(/\/forces\/(\d+)(?:\/(\w+))?/g, (_, number: string, field?: string) =>
       field ? `${field.replaceAll("_", " ")} of force ${number}` : `force ${number}`,

@@ -56,6 +56,15 @@ export class Eye {
     };
   }
 
+  /** Where a point is seen on a canvas there [CSS pixels of the page]; null behind the eye. */
+  spot(point: ArrayLike<number>, { left, top, width, height }: DOMRect): { x: number; y: number } | null {
+    this.camera.updateMatrixWorld();
+    const at = new Vector3(point[0], point[1], point[2]).applyMatrix4(this.camera.matrixWorldInverse);
+    if (at.z >= 0) return null;
+    at.applyMatrix4(this.camera.projectionMatrix);
+    return { x: left + ((at.x + 1) / 2) * width, y: top + ((1 - at.y) / 2) * height };
+  }
+
   /** Length of a CSS pixel at the target. */
   pixel(height: number): number {
     return this.place.height / Math.max(1, height);

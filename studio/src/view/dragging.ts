@@ -3,7 +3,8 @@ import { type PerspectiveCamera, Ray, Vector2, Vector3 } from "three";
 import { Grip } from "../hand";
 import type { Session } from "../session";
 import type { Led } from "./guide";
-import { led, lockOf, toggled } from "./locks";
+import { toggled } from "./faces";
+import { led, lockOf, toggled as lockToggled } from "./locks";
 import type { Dragged, Lock, Options, Picked } from "./types";
 
 const MOUSE = { particle: 10, spring: 6, still: 4 };
@@ -19,6 +20,8 @@ export interface Held {
   camera: PerspectiveCamera;
   /** What a press there takes; x and y from the canvas' corner [CSS pixels]. */
   find(x: number, y: number, reach: { particle: number; spring: number }): Picked;
+  /** The face there, by its particles. */
+  face(x: number, y: number): number[] | null;
   /** Whether a press on this particle takes it: one of a crowd that cannot be told apart is picked first. */
   takes(particle: number): boolean;
   /** Where a particle is [length]. */
@@ -114,9 +117,16 @@ export class Hand {
   private readonly up = (event: PointerEvent): void => {
     const { press } = this;
     if (event.pointerId !== press?.id) return;
-    if (!press.moved) this.view.options.picked.value = press.hit;
+    if (!press.moved) this.click(press);
     this.release();
   };
+
+  private click({ x, y, hit }: Press): void {
+    const { picked, element, markedFaces } = this.view.options;
+    if (element.value === "particles") return void (picked.value = hit);
+    const face = this.view.face(x, y);
+    if (face) markedFaces.value = toggled(markedFaces.value, face);
+  }
 
   private readonly cancelled = (event: PointerEvent): void => {
     if (event.pointerId === this.press?.id) this.release();
@@ -126,7 +136,7 @@ export class Hand {
     const taken = this.press?.taken;
     const { lock } = this.view.options;
     const wanted = event.ctrlKey || event.altKey || event.metaKey ? null : lockOf(event.key, event.shiftKey);
-    if (wanted) lock.value = toggled(lock.value, wanted);
+    if (wanted) lock.value = lockToggled(lock.value, wanted);
     else if (event.key === "Escape" && taken) this.release(true);
     else return;
     event.preventDefault();

@@ -8,7 +8,11 @@ export interface Form {
   /** Pairs of particles: edges of faces and pieces of polylines where there is no spring. */
   edges: Int32Array;
   strokes: Int32Array;
+  /** By particles; a triangle may repeat its last one. */
+  faces: number[][];
   triangles: Uint32Array;
+  /** The face that a triangle belongs to, by its number. */
+  face(triangle: number): number[] | null;
   /** Between particles that are joined, in the middle [length]; 0 where none are. */
   spacing: number;
 }
@@ -32,7 +36,9 @@ export function form(topology: Topology): Form {
     springs,
     edges: Int32Array.from(edges),
     strokes: Int32Array.from(strokes),
+    faces: all,
     triangles: triangles(all),
+    face: (triangle) => all[owners(all)[triangle]!] ?? null,
     spacing: median(topology, ends),
   };
 }
@@ -68,13 +74,20 @@ function pieces(topology: Topology): [number, number][] {
   return found;
 }
 
-function triangles(all: number[][]): Uint32Array {
+/** The number of the face of each triangle. */
+const owners = (all: number[][]) => all.flatMap((face, i) => (isFour(face) ? [i, i] : [i]));
+
+const isFour = ([, , c, d]: number[]) => d !== undefined && d !== c;
+
+/** Three corners of each triangle; four-sided faces have two. */
+export function triangles(all: number[][]): Uint32Array {
   const corners = new Uint32Array(6 * all.length);
   let count = 0;
-  for (const [a, b, c, d] of all as [number, number, number, number?][]) {
+  for (const face of all) {
+    const [a, b, c, d] = face as [number, number, number, number];
     corners.set([a, b, c], count);
     count += 3;
-    if (d === undefined || d === c) continue;
+    if (!isFour(face)) continue;
     corners.set([a, c, d], count);
     count += 3;
   }

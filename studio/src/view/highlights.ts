@@ -1,8 +1,9 @@
 // What is picked, marked or under the pointer, told apart from the rest by rings and a halo.
 import { channels, palette } from "./colours";
-import type { Form } from "./form";
+import { type Form, triangles } from "./form";
 import { Marks } from "./marks";
 import { Segments } from "./segments";
+import { Skin } from "./skin";
 import type { Stage } from "./stage";
 import type { Picked } from "./types";
 
@@ -13,6 +14,7 @@ export class Highlights {
   private readonly rim: Marks;
   private readonly casing: Segments[];
   private readonly hovered: Marks;
+  private readonly covered: Skin;
   private under: Picked = null;
   private readonly springs: { picked: Segments; hovered: Segments };
 
@@ -25,13 +27,20 @@ export class Highlights {
     const halo = (order = 9) => new Segments(common, new Int32Array(2), order, true);
     this.casing = [halo(7), halo(8)];
     this.springs = { picked: halo(), hovered: halo() };
-    group.add(this.marked.points, this.rim.points, this.picked.points, this.hovered.points);
+    this.covered = new Skin(common, new Uint32Array());
+    this.cover([]);
+    group.add(this.covered.mesh, this.marked.points, this.rim.points, this.picked.points, this.hovered.points);
     group.add(...this.casing.map(({ mesh }) => mesh));
     group.add(this.springs.picked.mesh, this.springs.hovered.mesh);
   }
 
   mark(particles: number[], form: Form | null): void {
     this.marked.put(particles.filter((particle) => particle < (form?.particles ?? 0)));
+  }
+
+  /** Faces that are selected, by their particles. */
+  cover(faces: number[][]): void {
+    this.covered.put(triangles(faces));
   }
 
   pick(picked: Picked, form: Form | null): void {
@@ -52,6 +61,8 @@ export class Highlights {
       marks.style.outline.value = [...channels(colour), 1];
       marks.style.fill.value = [...channels(colour), inside];
     };
+    this.covered.style.shade.value = channels(warning);
+    this.covered.style.depth.value = 0.25;
     ring(this.marked, warning, 17, 2, 0.15);
     ring(this.hovered, ink, 19, 1.2);
     ring(this.rim, ink, 25, 5.6);
@@ -69,7 +80,7 @@ export class Highlights {
 
   dispose(): void {
     const lines = [...this.casing, ...Object.values(this.springs)];
-    for (const part of [this.marked, this.rim, this.picked, this.hovered, ...lines]) part.dispose();
+    for (const part of [this.covered, this.marked, this.rim, this.picked, this.hovered, ...lines]) part.dispose();
   }
 
   private put(picked: Picked, form: Form | null, marks: Marks[], lines: Segments[]): void {

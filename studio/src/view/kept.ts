@@ -4,10 +4,20 @@ import type { Kept, Options } from "./types";
 
 const taken = new Map<string, Kept>();
 const LOCAL = 0x04034b50;
-const MOST = 16;
+const MOST = 128;
 
-/** `view.json` of a .hookean file, whose parts are not compressed; null if the file has none. */
+/** `view.json` of a .hookean file; null if the file has none. */
 export async function viewOf(file: File): Promise<Kept | null> {
+  try {
+    const part = await partOf(file, "view.json");
+    return part && (JSON.parse(await part.text()) as Kept);
+  } catch {
+    return null; // the service reports what is wrong with a damaged file
+  }
+}
+
+/** A part of a .hookean file, whose parts are not compressed; null if the file has none of this name. */
+export async function partOf(file: File, wanted: string): Promise<Blob | null> {
   if (!file.name.toLowerCase().endsWith(".hookean")) return null;
   try {
     for (let at = 0, part = 0; part < MOST; part++) {
@@ -16,7 +26,7 @@ export async function viewOf(file: File): Promise<Kept | null> {
       const [size, named, more] = [head.getUint32(18, true), head.getUint16(26, true), head.getUint16(28, true)];
       const begin = at + 30 + named + more;
       const name = await file.slice(at + 30, at + 30 + named).text();
-      if (name === "view.json") return JSON.parse(await file.slice(begin, begin + size).text()) as Kept;
+      if (name === wanted) return file.slice(begin, begin + size);
       at = begin + size;
     }
   } catch {

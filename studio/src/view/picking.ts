@@ -42,6 +42,19 @@ export class Picker {
     return spring && { kind: "spring", index: spring.index };
   }
 
+  /** The foremost triangle under x, y, by its number; -1 for none. */
+  triangle(x: number, y: number, among: Searched): number {
+    this.place(among);
+    const { screen } = this;
+    const { triangles } = among;
+    let [found, nearest] = [-1, Infinity];
+    for (let i = 0; i < triangles.length; i += 3) {
+      const depth = depthAt(screen, 3 * triangles[i]!, 3 * triangles[i + 1]!, 3 * triangles[i + 2]!, x, y);
+      if (depth < nearest) [found, nearest] = [i / 3, depth];
+    }
+    return found;
+  }
+
   private place({ camera, width, height, positions }: Searched): void {
     if (this.screen.length !== positions.length) this.screen = new Float32Array(positions.length);
     const { screen } = this;
@@ -106,27 +119,29 @@ export class Picker {
   private hidden({ x, y, depth }: Found, { triangles, thickness }: Searched): boolean {
     const { screen } = this;
     for (let i = 0; i < triangles.length; i += 3) {
-      const a = 3 * triangles[i]!;
-      const b = 3 * triangles[i + 1]!;
-      const c = 3 * triangles[i + 2]!;
-      const ax = screen[a]! - x;
-      const bx = screen[b]! - x;
-      const cx = screen[c]! - x;
-      if ((ax > 0 && bx > 0 && cx > 0) || (ax < 0 && bx < 0 && cx < 0)) continue;
-      const ay = screen[a + 1]! - y;
-      const by = screen[b + 1]! - y;
-      const cy = screen[c + 1]! - y;
-      const u = bx * cy - by * cx;
-      const v = cx * ay - cy * ax;
-      const w = ax * by - ay * bx;
-      if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) continue;
-      const area = u + v + w;
-      if (area === 0 || !screen[a + 2] || !screen[b + 2] || !screen[c + 2]) continue;
-      const at = area / (u / screen[a + 2]! + v / screen[b + 2]! + w / screen[c + 2]!);
+      const at = depthAt(screen, 3 * triangles[i]!, 3 * triangles[i + 1]!, 3 * triangles[i + 2]!, x, y);
       if (at < depth - thickness) return true;
     }
     return false;
   }
+}
+
+/** How far from the eye a triangle of corners a, b and c is at x, y; infinitely far where it is not there. */
+function depthAt(screen: Float32Array, a: number, b: number, c: number, x: number, y: number): number {
+  const ax = screen[a]! - x;
+  const bx = screen[b]! - x;
+  const cx = screen[c]! - x;
+  if ((ax > 0 && bx > 0 && cx > 0) || (ax < 0 && bx < 0 && cx < 0)) return Infinity;
+  const ay = screen[a + 1]! - y;
+  const by = screen[b + 1]! - y;
+  const cy = screen[c + 1]! - y;
+  const u = bx * cy - by * cx;
+  const v = cx * ay - cy * ax;
+  const w = ax * by - ay * bx;
+  if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return Infinity;
+  const area = u + v + w;
+  if (area === 0 || !screen[a + 2] || !screen[b + 2] || !screen[c + 2]) return Infinity;
+  return area / (u / screen[a + 2]! + v / screen[b + 2]! + w / screen[c + 2]!);
 }
 
 /** Keep the best few. */

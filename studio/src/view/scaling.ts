@@ -91,3 +91,11 @@ export class Scaling {
 
 /** Sizes of the numbers that have one. */
 const sizes = (values: ArrayLike<number>) => Float64Array.from(values, (value) => Math.abs(value) || NaN);
+
+/** Strains [-] of springs by their ends and rest lengths; not a number where the rest length is 0. */
+export function strains(p: Float32Array, ends: Int32Array, lengths: Float32Array): Float32Array {
+  return lengths.map((rest, i) => {
+    const [a, b] = [3 * ends[2 * i]!, 3 * ends[2 * i + 1]!];
+    return rest > 0 ? Math.hypot(p[a]! - p[b]!, p[a + 1]! - p[b + 1]!, p[a + 2]! - p[b + 2]!) / rest - 1 : NaN;
+  });
+}

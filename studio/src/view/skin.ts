@@ -34,7 +34,7 @@ export class Skin {
 
   constructor(
     shared: Common,
-    readonly triangles: Uint32Array,
+    triangles: Uint32Array,
   ) {
     const geometry = new BufferGeometry();
     geometry.setIndex(new BufferAttribute(triangles, 1));
@@ -44,6 +44,13 @@ export class Skin {
     made.polygonOffsetFactor = made.polygonOffsetUnits = 1;
     this.mesh = new Mesh(geometry, made);
     this.mesh.frustumCulled = false;
+  }
+
+  /** Other faces, in front of the rest. */
+  put(triangles: Uint32Array): void {
+    this.mesh.geometry.setIndex(new BufferAttribute(triangles, 1));
+    this.mesh.material.polygonOffset = false;
+    this.mesh.visible = triangles.length > 0;
   }
 
   dispose(): void {

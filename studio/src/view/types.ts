@@ -17,6 +17,9 @@ export type Picked = { kind: "particle" | "spring"; index: number } | null;
 /** What a drag on the canvas does: as ever, or select particles; or a click draws. */
 export type Tool = "none" | "box" | "lasso" | "draw";
 
+/** What clicks, boxes and lassos select. */
+export type Element = "particles" | "faces";
+
 /** Particles by the name of a group. */
 export type Groups = Record<string, number[]>;
 
@@ -93,6 +96,9 @@ export interface Options {
   groups: Signal<Groups>;
   /** Particles that are selected, or that a warning speaks of. */
   marked: Signal<number[]>;
+  element: Signal<Element>;
+  /** Selected faces, by their particles, in the order of their selection. */
+  markedFaces: Signal<number[][]>;
   /** Particles between which is measured, in their order. */
   measured: Signal<number[]>;
   /** Whether the numbers of those that are selected are shown. */
@@ -152,6 +158,8 @@ export const options = (): Options => ({
   tool: signal<Tool>("none"),
   groups: signal<Groups>({}),
   marked: signal<number[]>([]),
+  element: signal<Element>("particles"),
+  markedFaces: signal<number[][]>([]),
   measured: signal<number[]>([]),
   numbers: signal(false),
   restLengths: signal<Float32Array | null>(null),
@@ -211,6 +219,8 @@ export interface View {
   show(particles: number[]): void;
   /** Particles drawn inside of a closed line on the canvas [CSS pixels]. */
   inside(line: { x: number; y: number }[]): number[];
+  /** Faces whose middles are drawn inside of it. */
+  facesInside(line: { x: number; y: number }[]): number[][];
   /** Particles of the springs whose values lie beyond the scale. */
   beyond(): number[];
   /** Particles of faces whose values lie beyond their scale. */

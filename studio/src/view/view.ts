@@ -7,6 +7,7 @@ import { note, stats } from "../stats";
 import { acting } from "./acting";
 import { Eye, type Place as From } from "./camera";
 import { Hand, type Held } from "./dragging";
+import { enclosed } from "./faces";
 import { form } from "./form";
 import { Ghost } from "./ghost";
 import { Guide } from "./guide";
@@ -15,16 +16,16 @@ import { Highlights } from "./highlights";
 import { Keys } from "./keys";
 import { numbers, remember, remembered } from "./memory";
 import { Overlays } from "./overlays";
-import { Picker } from "./picking";
+import { Picker, type Searched } from "./picking";
 import { type Dress, Picture } from "./picture";
-import { Scaling } from "./scaling";
+import { Scaling, strains } from "./scaling";
 import { floorOf } from "./plane";
 import { type Place, inside } from "./sets";
 import { Stage } from "./stage";
 import { Surface } from "./surface";
 import { blank } from "../drawing/blank";
 import { Triad } from "./triad";
-import type { Dragged, Kept, Legend, Look, Options, Picked, View } from "./types";
+import type { Dragged, Kept, Legend, Look, Options, View } from "./types";
 
 const REST = 220;
 
@@ -143,6 +144,12 @@ class Drawing implements View {
     return found;
   }
 
+  facesInside(line: Place[]): number[][] {
+    const { left, top } = this.canvas.getBoundingClientRect();
+    const there = line.map(({ x, y }) => ({ x: x + left, y: y + top }));
+    return enclosed(this.picture.form?.faces ?? [], there, (particle) => this.project(particle));
+  }
+
   beyond(): number[] {
     const ends = this.picture.form?.springs;
     if (!this.drawn || !ends) return [];
@@ -179,12 +186,7 @@ class Drawing implements View {
   }
 
   spot(point: ArrayLike<number>): { x: number; y: number } | null {
-    this.eye.camera.updateMatrixWorld();
-    const at = new Vector3(point[0], point[1], point[2]).applyMatrix4(this.eye.camera.matrixWorldInverse);
-    if (at.z >= 0) return null;
-    at.applyMatrix4(this.eye.camera.projectionMatrix);
-    const { left, top, width, height } = this.canvas.getBoundingClientRect();
-    return { x: left + ((at.x + 1) / 2) * width, y: top + ((1 - at.y) / 2) * height };
+    return this.eye.spot(point, this.canvas.getBoundingClientRect());
   }
 
   particles(): Float32Array {
@@ -234,32 +236,36 @@ class Drawing implements View {
       at,
       camera: eye.camera,
       size: () => picture.size,
-      find: (x, y, reach) => this.find(x, y, reach),
+      find: (x, y, reach) => {
+        const among = this.searched();
+        return among && this.picker.find(x, y, among, reach);
+      },
+      face: (x, y) => this.face(x, y),
       takes: (particle) => this.takes(particle),
       orbits: (allowed) => (eye.controls.enabled = allowed),
       changed: this.ask,
     };
   }
 
-  private find(x: number, y: number, reach: { particle: number; spring: number }): Picked {
+  private searched(): Searched | null {
     const { picture, stage, eye, options } = this;
     if (!this.drawn || !picture.form) return null;
     const { mesh, springs } = options.layers.value;
-    return this.picker.find(
-      x,
-      y,
-      {
-        camera: eye.camera,
-        width: stage.width,
-        height: stage.height,
-        positions: this.drawn.positions,
-        springs: springs ? picture.form.springs : new Int32Array(),
-        triangles: mesh ? picture.form.triangles : new Uint32Array(),
-        held: picture.held,
-        thickness: 0.01 * picture.size,
-      },
-      reach,
-    );
+    return {
+      camera: eye.camera,
+      width: stage.width,
+      height: stage.height,
+      positions: this.drawn.positions,
+      springs: springs ? picture.form.springs : new Int32Array(),
+      triangles: mesh ? picture.form.triangles : new Uint32Array(),
+      held: picture.held,
+      thickness: 0.01 * picture.size,
+    };
+  }
+
+  private face(x: number, y: number): number[] | null {
+    const among = this.searched();
+    return (among && this.picture.form?.face(this.picker.triangle(x, y, among))) ?? null;
   }
 
   private takes(particle: number): boolean {
@@ -341,6 +347,7 @@ class Drawing implements View {
         void session.topology.value;
         this.highlights.pick(options.picked.value, picture.form);
         this.highlights.mark(options.marked.value, picture.form);
+        this.highlights.cover(options.markedFaces.value);
         this.ask();
       }),
       effect(() => {
@@ -481,11 +488,7 @@ class Drawing implements View {
     const lengths = restLengths.value;
     const ends = this.picture.form!.springs;
     if (colouring.value === "plain" || !lengths || !this.picture.strained) return [];
-    const p = frame.positions;
-    return lengths.map((rest, i) => {
-      const [a, b] = [3 * ends[2 * i]!, 3 * ends[2 * i + 1]!];
-      return rest > 0 ? Math.hypot(p[a]! - p[b]!, p[a + 1]! - p[b + 1]!, p[a + 2]! - p[b + 2]!) / rest - 1 : NaN;
-    });
+    return strains(frame.positions, ends, lengths);
   }
 
   private relabel(): void {

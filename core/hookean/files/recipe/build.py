@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import ChainMap
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -10,11 +11,12 @@ import numpy as np
 
 from hookean.errors import InputError
 from hookean.files.recipe import shapes
-from hookean.files.recipe.curves import Placed, lying_on, pulled
+from hookean.files.recipe.curves import lying_on
 from hookean.files.recipe.drawing import Drawing, Item
+from hookean.files.recipe.guides import pulling
 from hookean.files.recipe.select import Term, count, is_selector, listed, select, terms
 from hookean.files.recipe.shapes import Shape, Split
-from hookean.files.recipe.snapping import reach_of, snapped
+from hookean.files.recipe.snapping import drawn_on, reach_of, snapped
 from hookean.scene.scene import Scene
 
 PLACE_FIELDS = ("points", "lines", "mesh")
@@ -57,12 +59,6 @@ def build(drawing: Drawing, recipe: Mapping[str, Any], *, lenient: bool = False)
     return _Builder(drawing, recipe, lenient).built()
 
 
-def _drawn_on(anchors: Sequence[Shape | None]) -> list[Any]:
-    """Coordinates of anchors that no force connects: particles between which lines can be drawn [length]."""
-    found = [shape.array.reshape(-1, 3) for shape in anchors if shape is not None]
-    return np.unique(np.concatenate(found), axis=0).tolist() if found else []
-
-
 class _Builder:
     def __init__(self, drawing: Drawing, recipe: Mapping[str, Any], lenient: bool) -> None:
         self.drawing, self.lenient = drawing, lenient
@@ -90,13 +86,14 @@ class _Builder:
             for i, table in enumerate(given):
                 self._remember(table, f"/{group}/{i}")
         placed = {g: [self._place(g, i, t) for i, t in enumerate(tables[g])] for g in ("forces", "anchors")}
-        placed["forces"] = self._pulling(placed["forces"])
+        known = ChainMap(self.meshes, self.literal)
+        placed["forces"] = pulling(placed["forces"], self._led, self.drawing.factor, known, self.notes)
         carried = [entry for i, table in enumerate(tables["geometry"]) for entry in self._carry(i, table)]
         for group in placed:
             scene[group] = [table for table, _ in placed[group]]
         scene["geometry"] = [table for table, _ in carried]
         if not self.lenient and not scene["forces"] and "particles" not in scene:
-            scene["particles"] = _drawn_on([shape for _, shape in placed["anchors"]])
+            scene["particles"] = drawn_on([shape for _, shape in placed["anchors"]])
         made = {n: {"vertices": s.array, "faces": s.faces} for n, s in self.meshes.items()}
         if isinstance(self.recipe.get("meshes", {}), Mapping):  # else the scene refuses it
             scene["meshes"] = {**self.literal, **made}
@@ -137,7 +134,7 @@ class _Builder:
                         self.splits.setdefault(item, split)  # type: ignore[arg-type]
 
     def _literal_mesh(self, name: str, table: Mapping[str, Any]) -> bool:
-        return name == "mesh" and isinstance(table.get(name), str) and table[name] in self.literal
+        return name in ("mesh", "target") and isinstance(table.get(name), str) and table[name] in self.literal
 
     def _split_for(self, item: Item, own: Split | None) -> Split | None:
         if own is not None:
@@ -186,22 +183,19 @@ class _Builder:
         self._use(curves, f"curve that holds points of {said}")
         return lying_on(shape, curves, self.drawing.factor, self.tolerance, f"{pointer}/on")
 
-    def _pulling(self, placed: Placed) -> Placed:
-        """Pulls to selected curves get polylines; the tables of further curves come last, for pointers count tables."""
-        first, more = [], []
-        for number, (table, shape) in enumerate(placed):
-            if table.get("kind") != "pull_to_curve" or not is_selector(table.get("curve")):
-                first.append((table, shape))
-                continue
-            pointer = f"/forces/{number}"
-            curves = self._curves(table["curve"], f"{pointer}/curve")
-            parts = pulled(table, shape, curves, self.drawing.factor, pointer)
-            first.append(parts[0])
-            more += parts[1:]
-            said = f'curve of pull_to_curve "{table["name"]}"' if table.get("name") else "curve of pull_to_curve"
-            self._use(curves, said)
-            self.notes.append(f"forces[{number}] pull_to_curve: to {shapes.counted(curves)}")
-        return first + more
+    def _led(self, table: dict[str, Any], pointer: str, said: str) -> Sequence[tuple[Item, ...]]:
+        """The curves of a pull, or its target as a mesh of the scene; what is selected."""
+        if table.get("kind") == "pull_to_curve" and is_selector(table.get("curve")):
+            items = self._curves(table["curve"], f"{pointer}/curve")
+            self._use(items, f"curve of {said}")
+            return [tuple(items)]
+        if not is_selector(table.get("target")) or self._literal_mesh("target", table):
+            return []
+        split = shapes.split_of(table.pop("target_divide", None), f"{pointer}/target_divide")
+        shape = self._shape("mesh", table["target"], split, f"{pointer}/target")
+        table["target"] = self._named(table["target"], shape, split)
+        self._use(shape.items, f"target of {said}")
+        return []
 
     def _curves(self, value: Any, pointer: str) -> list[Item]:
         found: list[Item] = []

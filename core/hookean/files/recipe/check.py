@@ -18,9 +18,9 @@ FIELDS_MEANT = {
     "surface": "mesh", "surfaces": "mesh", "brep": "mesh", "meshes": "mesh", "curve": "lines", "curves": "lines",
     "load": "vector", "force": "vector", "division": "divide", "k": "stiffness",
 }  # fmt: skip
-ADDED = ("divide", "divide_u", "divide_v", "on", "curve_divide", "snap")
+ADDED = ("divide", "divide_u", "divide_v", "on", "curve_divide", "target_divide", "nearest", "snap")
 """Fields that recipes have beyond those of a scene."""
-TEXTS = ("name", "kind", "points", "lines", "mesh", "curve", "on", "edges", "axes", "rotations", "anchor")
+TEXTS = ("name", "kind", "points", "lines", "mesh", "curve", "target", "on", "edges", "axes", "rotations", "anchor")
 
 
 def check(recipe: Mapping[str, Any]) -> None:

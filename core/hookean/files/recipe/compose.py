@@ -51,6 +51,8 @@ def recipe_of(rows: Sequence[Row], seen: Drawing, weld: float) -> tuple[dict[str
     return recipe, {group: [table.row for table in found] for group, found in groups.items()}
 
 
+GUIDES = ("curve", "target")
+"""The places of what pulls and stays where it is."""
 FEATURES = {"lines": {"edges": "ends", "all": "vertices"}, "mesh": {"edges": "rim", "all": "vertices"}}
 """By the place of an elastic force, the points of it that a guide pulls."""
 
@@ -63,21 +65,26 @@ def _written(tables: Sequence[_Table], seen: Drawing, led: Sequence[_Table]) -> 
         name = str(part.table["name"])
         used[name] = used.get(name, 0) + 1
         named = name if used[name] == 1 else f"{name}/{used[name]}"
-        if part.place == "curve":
+        if part.place in GUIDES:
             selector = _selector(table.items, replace(part, feature=""), seen)
-            yield {**part.table, "name": named, "curve": selector, "points": _pulled(part.feature, seen, led)}
+            yield {**part.table, "name": named, part.place: selector, "points": _pulled(part, seen, led)}
             continue
         selector = _selector(table.items, part, seen)
         yield {**part.table, "name": named, part.place: selector}
 
 
-def _pulled(what: str, seen: Drawing, led: Sequence[_Table]) -> list[str]:
+def _pulled(guide: Part, seen: Drawing, led: Sequence[_Table]) -> list[str]:
     """Selectors of the points that a guide pulls."""
     found: list[str] = []
     for table in led:
-        part = Part("forces", {}, "points", FEATURES[table.part.place][what])
-        selector = _selector(table.items, part, seen)
+        items = [item for item in table.items if guide.layer in ("", item.layer)]
+        if not items:
+            continue
+        part = Part("forces", {}, "points", FEATURES[table.part.place][guide.feature])
+        selector = _selector(items, part, seen)
         found += [selector] if isinstance(selector, str) else selector
+    if guide.layer and not found:
+        return [f"vertices:layer:{guide.layer}"]  # which the file lacks, or nothing elastic is on: reported as that
     return list(dict.fromkeys(found))
 
 

@@ -27,6 +27,7 @@ from hookean.files.recipe.build import Built, build
 from hookean.files.recipe.compose import recipe_of
 from hookean.files.recipe.drawing import Drawing, drawing
 from hookean.files.recipe.foreign import drawn_in, model_of
+from hookean.files.recipe.guides import PULLS
 from hookean.files.recipe.notes import notes
 from hookean.files.recipe.roles import ROLES, converted, role_names, usable
 from hookean.files.recipe.rows import Entry, Row, fill, guess, own, rows_of
@@ -240,7 +241,7 @@ def _solvable(found: Draft, sources: Mapping[str, list[int]]) -> None:
 
     forces = found.recipe["forces"]
     are_points = not forces and {row.family for row in found.rows} == {"points"}
-    if not are_points and all(table.get("kind", "unary") in ("unary", "pull_to_curve") for table in forces):
+    if not are_points and all(table.get("kind", "unary") in ("unary", *PULLS) for table in forces):
         found.fault = _nothing(found.rows)
         return
     try:
@@ -289,7 +290,7 @@ def _count(found: Draft, built: Built, sources: Mapping[str, list[int]], element
     sums: list[Counter[str]] = [Counter() for _ in found.rows]
     for number, row in enumerate(sources["forces"]):
         force, shape = built.scene.forces[number], built.forces[number]
-        if force.kind_name == "pull_to_curve":
+        if force.kind_name in PULLS:
             sums[row]["guide"] += sum(
                 (entry.role or found.rows[row].role) == "guide" for entry in found.rows[row].entries
             )

@@ -58,12 +58,14 @@ Snap = Annotated[
 @dataclass(frozen=True)
 class Part:
     """A table of a recipe for one object: its group (`forces`, `anchors`, `geometry`), the field that selects the
-    object, and the feature of it. Of a `curve` that pulls, the feature is what it pulls: edges or all."""
+    object, and the feature of it. Of a `curve` or `target` that pulls, the feature is what it pulls, edges or all, and
+    `layer` of which layer; "": of all."""
 
     group: str
     table: Mapping[str, Any]
     place: str
     feature: str = ""
+    layer: str = ""
 
 
 class Role(Model):
@@ -353,33 +355,58 @@ class CarriedSurfaces(Surface):
         return [Part("geometry", {"kind": "mesh", "name": item.layer or item.kind, **self.divided(item)}, "mesh")]
 
 
-class GuideCurves(Role):
-    """Curves that guide particles."""
+class Guide(Role):
+    """Base of the roles of what stays where it is and pulls particles."""
 
-    role, family = "guide", "curves"
-    summary = "Stays where it is, and pulls particles onto itself along which they slide"
+    role = "guide"
     strength: float = Field(
         default=1000.0, ge=0, le=LARGEST, description="Pull on a particle one unit away from it [force/length]"
     )
-    pulls: Literal["edges", "all"] = Field(
-        default="edges", description="Particles it pulls: on edges of surfaces and at ends of curves, or all [-]"
+    pulls: Literal["edges", "all", "nearest edges", "nearest"] = Field(
+        default="edges",
+        description="Particles it pulls: on edges of surfaces and at ends of curves, or all; nearest: only those of "
+        "them that no other such guide is nearer to [-]",
     )
+    layer: str = Field(default="", description="Layer of the particles it pulls; empty: all layers [-]")
+
+    def pull(self, kind: str, item: Item, place: str, divided: Mapping[str, Any]) -> list[Part]:
+        """The table of a pull."""
+        name = item.layer.replace("::", " ") or self.role
+        table = {"kind": kind, "name": name, "strength": self.strength, **divided}
+        table |= {"nearest": True} if self.pulls.startswith("nearest") else {}
+        return [Part("forces", table, place, "edges" if "edges" in self.pulls else "all", self.layer)]
+
+
+class GuideCurves(Guide):
+    """Curves that guide particles."""
+
+    family = "curves"
+    summary = "Stays where it is, and pulls particles onto itself along which they slide"
     divide: int = Field(
         default=100, ge=1, le=2000, description="Pieces of the polyline that stands for it, if it is bent [-]"
     )
 
     def parts(self, item: Item, units: Units) -> list[Part]:
         """A pull to the curve; of several with the same values each particle is pulled to the nearest."""
-        name = item.layer.replace("::", " ") or self.role
-        table = {"kind": "pull_to_curve", "name": name, "strength": self.strength, "curve_divide": self.divide}
-        return [Part("forces", table, "curve", self.pulls)]
+        return self.pull("pull_to_curve", item, "curve", {"curve_divide": self.divide})
+
+
+class GuideSurfaces(Guide, Surface):
+    """Surfaces that guide particles."""
+
+    summary = "Stays where it is, and pulls particles onto itself on which they slide"
+
+    def parts(self, item: Item, units: Units) -> list[Part]:
+        """A pull to the nearest point of the mesh."""
+        split = self.split(item)
+        return self.pull("pull_to_mesh", item, "target", {} if split is None else {"target_divide": list(split)})
 
 
 ROLES: dict[tuple[str, str], type[Role]] = {
     (role.family, role.role): role
     for role in (
         *(SpringRole, CableRole, NetRole, MembraneRole, ShellRole, HeldPoints, HeldCurves, HeldSurfaces),
-        *(LoadedPoints, LoadedCurves, CarriedPoints, CarriedCurves, CarriedSurfaces, GuideCurves),
+        *(LoadedPoints, LoadedCurves, CarriedPoints, CarriedCurves, CarriedSurfaces, GuideCurves, GuideSurfaces),
     )
 }
 """All roles with values, by family and name."""

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from hookean.errors import InputError
+from hookean.files.recipe.shapes import Shape
 from hookean.scene.scene import Scene
 from hookean.system.weld import Welded
 
@@ -42,3 +44,9 @@ def reach_of(table: Mapping[str, object], pointer: str) -> float:
     if isinstance(given, bool) or not isinstance(given, int | float) or not 0 <= given < np.inf:
         raise InputError(f"{pointer}/snap", f"{given!r} given; give the largest distance to a particle, at least 0")
     return float(given)
+
+
+def drawn_on(anchors: Sequence[Shape | None]) -> list[Any]:
+    """Coordinates of anchors that no force connects: particles between which lines can be drawn [length]."""
+    found = [shape.array.reshape(-1, 3) for shape in anchors if shape is not None]
+    return np.unique(np.concatenate(found), axis=0).tolist() if found else []

@@ -5,21 +5,50 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from hookean.errors import InputError
 from hookean.forces.base import Force, lengths
 from hookean.running.drawing.edits import Add
-from hookean.running.drawing.sheet import Cloth, Floats, Ints, Sheet, many, remade
-from hookean.system.weld import element_columns
+from hookean.running.drawing.sheet import Cloth, Floats, Ints, Sheet, exist, many, remade
+from hookean.system.weld import element_columns, keepers
 
 
 def add(sheet: Sheet, edit: Add) -> None:
     """Put what is new into the model. InputError for a particle or mesh that does not exist."""
-    sheet.new(np.asarray(edit.points))
+    number = _numbers(sheet, np.asarray(edit.points), edit.weld)
     for name, faces in edit.faces.items():
-        put_faces(sheet, name, np.asarray(faces), f"/add/faces/{name}")
+        pointer = f"/add/faces/{name}"
+        put_faces(sheet, name, _mapped(faces, number, pointer), pointer)
     for i, force in enumerate(edit.forces):
-        _put(sheet, force, f"/add/forces/{i}")
+        pointer, particles = f"/add/forces/{i}", getattr(force, "particles", None)
+        if particles is not None:
+            force = force.replaced(particles=_mapped(particles, number, f"{pointer}/particles"))
+        _put(sheet, force, pointer)
+
+
+def _numbers(sheet: Sheet, points: Floats, weld: float) -> Ints:
+    """The particle of each number that an edit may give: of those there are, then of its points, which are made or, if
+    one is within `weld` [length], are that one."""
+    old = np.arange(sheet.count)
+    if not weld or not len(points):
+        return np.concatenate([old, sheet.new(points)])
+    there = np.full(len(points), -1)
+    if sheet.count:
+        apart, nearest = cKDTree(sheet.now).query(points)
+        there[apart <= weld] = nearest[apart <= weld]
+    left = np.flatnonzero(there < 0)
+    first = left[keepers(points[left], weld)]
+    made = np.unique(first)
+    there[made] = sheet.new(points[made])
+    there[left] = there[first]
+    return np.concatenate([old, there])
+
+
+def _mapped(given: Ints, number: Ints, pointer: str) -> Ints:
+    """Particles by the numbers of an edit. InputError for one that does not exist."""
+    exist(given, len(number), pointer)
+    return number[given]
 
 
 def put_faces(sheet: Sheet, name: str, faces: Ints, pointer: str) -> None:
@@ -41,9 +70,7 @@ def _put(sheet: Sheet, force: Force, pointer: str) -> None:
     for place in ("points", "lines"):
         if getattr(force, place, None) is not None:
             raise InputError(f"{pointer}/{place}", "give particles by number, or a mesh; new ones are given as points")
-    particles, mesh = getattr(force, "particles", None), getattr(force, "mesh", None)
-    if particles is not None:
-        sheet.exist(particles, f"{pointer}/particles")
+    mesh = getattr(force, "mesh", None)
     if mesh is not None and mesh not in sheet.meshes:
         sheet.mesh(mesh, f"{pointer}/mesh")
     taken = {other.name for other in sheet.forces if other is not None}

@@ -21,6 +21,12 @@ class Add(Model):
     called = "add"
 
     points: Points = Field(default=np.zeros((0, 3)), description="Where new particles start [length]")
+    weld: float = Field(
+        default=0.0,
+        ge=0,
+        description="Within this distance of where a particle is, or of an earlier one of the points, a point is that "
+        "particle, by both numbers; 0: each is a new one [length]",
+    )
     faces: dict[str, Faces] = Field(
         default={}, description="By the name of a mesh, faces that it gets: 3 or 4 particles each"
     )

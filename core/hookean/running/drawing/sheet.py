@@ -98,10 +98,7 @@ class Sheet:
 
     def exist(self, particles: Any, pointer: str) -> None:
         """InputError for the number of a particle that does not exist."""
-        flat = np.asarray(particles).ravel()
-        if len(flat) and not 0 <= int(flat.min()) <= int(flat.max()) < self.count:
-            wrong = int(flat.max()) if int(flat.max()) >= self.count else int(flat.min())
-            raise InputError(pointer, f"particle {wrong} does not exist; there are {self.count}, counted from 0")
+        exist(particles, self.count, pointer)
 
     def written(self) -> Scene:
         """The scene; its masses and velocities are 1 and 0 for new particles."""
@@ -121,6 +118,14 @@ class Sheet:
         for group in ("forces", "anchors", "geometry"):
             changed[group] = tuple(item for item in getattr(self, group) if item is not None)
         return scene.model_copy(update=changed)
+
+
+def exist(particles: Any, count: int, pointer: str) -> None:
+    """InputError for the number of a particle that is not among `count`."""
+    flat = np.asarray(particles).ravel()
+    if len(flat) and not 0 <= int(flat.min()) <= int(flat.max()) < count:
+        wrong = int(flat.max()) if int(flat.max()) >= count else int(flat.min())
+        raise InputError(pointer, f"particle {wrong} does not exist; there are {count}, counted from 0")
 
 
 def many(value: Any, count: int, vector: bool) -> bool:
