@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import ClassVar, Literal
 
 import numpy as np
+from pydantic import field_validator
 
 from hookean.forces.base import Block, Floats, Places
-from hookean.forces.line_angles import LineAngle, angle_block
+from hookean.forces.line_angles import LineAngle, angle_block, within_half_a_turn
 from hookean.values.columns import Positives
 from hookean.values.fields import Field
 
@@ -22,9 +23,16 @@ class AngleSnap(LineAngle):
     """
 
     kind: Literal["angle_snap"] = "angle_snap"
-    multiple: Positives = Field(default=np.pi / 2, description="a [rad]: lines turn to 0, a, 2 a, ..., up to pi")
+    multiple: Positives = Field(
+        default=np.pi / 2, description="a [rad], at most pi: lines turn to 0, a, 2 a, ..., up to pi"
+    )
 
     formula: ClassVar[str] = "E = S (θ - n a)²/2"
+
+    @field_validator("multiple")
+    @classmethod
+    def _an_angle(cls, angle: float | Floats) -> float | Floats:
+        return within_half_a_turn(angle)
 
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: S, a."""

@@ -6,11 +6,13 @@ from typing import Any, ClassVar, Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import field_validator
 
 from hookean.compiled import dispatch
 from hookean.compiled.marks import device
 from hookean.forces import rod_links, rod_spins, rod_stress, rod_tangent
 from hookean.forces.base import Block, Floats, Force, Ints, Places, lengths
+from hookean.forces.line_angles import within_half_a_turn
 from hookean.forces.rod_bound import ROOM, bound_chain
 from hookean.forces.rod_chain import (
     ALONE,
@@ -141,7 +143,9 @@ class Bend(Force):
     particles: Maybe[IndexRows] = Field(default=None, description="Three particles a, b, c of each corner")
     points: Maybe[PointRows] = Field(default=None, description="Coordinates of a, b, c of each corner")
     stiffness: NonNegatives = Field(default=1.0, description="EI, bending stiffness [force length^2]")
-    rest_angle: Maybe[NonNegatives] = Field(default=None, description="phi0 [rad], 0 straight; default: start angle")
+    rest_angle: Maybe[NonNegatives] = Field(
+        default=None, description="phi0 [rad], 0 straight, at most pi; default: start angle"
+    )
     angle_factor: NonNegatives = Field(default=1.0, description="Factor on the rest angle [-]; 0: straight")
 
     sections: Sections = Field(
@@ -156,6 +160,11 @@ class Bend(Force):
     blur: ClassVar[float] = 5e-13
     kernel: ClassVar[Any] = staticmethod(bend_kernel)
     bent: ClassVar[Any] = staticmethod(lambda block, x, moved: bend_bent(block, x, moved))
+
+    @field_validator("rest_angle")
+    @classmethod
+    def _an_angle(cls, angle: float | Floats | None) -> float | Floats | None:
+        return None if angle is None else within_half_a_turn(angle)
 
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: EI / l, rest angle, factor, and the chains of `rod_chain`. Corners of zero length have

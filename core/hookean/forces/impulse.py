@@ -7,7 +7,7 @@ from typing import ClassVar, Literal
 import numpy as np
 
 from hookean.forces.base import Block, Floats, Force, Places, lengths
-from hookean.values.columns import IndexRows, Points, Reals, Vectors
+from hookean.values.columns import IndexRows, NonNegatives, Points, Reals, Vectors
 from hookean.values.fields import Field, Maybe
 
 NEXT = 1e-9  # part of its time by which an impulse may be late: times of steps are sums
@@ -28,7 +28,7 @@ class Impulse(Force):
     points: Maybe[Points] = Field(default=None, description="Coordinates of particles")
     origin: Vectors = Field(default=np.zeros(3), description="The point it comes from [length], or one for each")
     momentum: Reals = Field(default=1.0, description="P [force time] of each particle, or one for each")
-    time: Reals = Field(default=0.0, description="The moment [time] since the start, or one for each")
+    time: NonNegatives = Field(default=0.0, description="The moment [time] since the start, or one for each")
 
     formula: ClassVar[str] = "Δv = P u/m"
     role: ClassVar[Literal["internal", "load", "support"]] = "load"

@@ -16,6 +16,8 @@ from hookean.values.fields import Field
 @device
 def beyond(parameters: Any, e: Any, length: Any) -> Any:
     """How much longer a line is than the nearest multiple."""
+    if parameters[e, 1] <= 1e-16 * length:
+        return 0.0  # between the numbers near it: every length is a multiple
     return length - parameters[e, 1] * np.floor(length / parameters[e, 1] + 0.5)
 
 

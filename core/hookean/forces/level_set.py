@@ -101,7 +101,7 @@ class LevelSet(Pull):
     mesh: str | None = Field(default=None, description="Name of a mesh whose vertices are pulled")
     charges: Points = Field(description="Places of the charges [length], at least one")
     charge: Positives = Field(default=1.0, description="q_i, one for all charges or one for each [length]")
-    level: float = Field(default=1.0, gt=0, le=1e12, description="L, the potential on the surface [-]")
+    level: float = Field(default=1.0, ge=1e-12, le=1e12, description="L, the potential on the surface [-]")
     strength: NonNegatives = Field(default=1000.0, description="k [force/length]")
 
     formula: ClassVar[str] = "E = k q² (1/φ - 1/L)²/2, φ = Σ q/r"

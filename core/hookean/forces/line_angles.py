@@ -137,7 +137,8 @@ def fill(blocks: Any, e: Any, stiffness: Any, moment: Any, sine: Any, cosine: An
 @device
 def nearest(angle: Any, multiple: Any) -> Any:
     """The multiple of an angle, up to pi, that is nearest to another angle."""
-    return multiple * np.minimum(np.floor(angle / multiple + 0.5), np.floor(np.pi / multiple + 1e-9))
+    step = np.maximum(multiple, 1e-16)  # finer than the numbers between angles: every one is a multiple
+    return step * np.minimum(np.floor(angle / step + 0.5), np.floor(np.pi / step + 1e-9))
 
 
 @device

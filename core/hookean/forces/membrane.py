@@ -198,12 +198,12 @@ class Membrane(Force):
     mesh: str = Field(description="Name of the mesh that is the cloth")
     material: str | None = Field(default=None, description="Name of a cloth, or of a solid with `thickness`")
     thickness: float | None = Field(default=None, gt=0, le=1e12, description="Thickness of a solid material [length]")
-    warp_stiffness: float | None = Field(default=None, gt=0, le=1e12, description="Ew per width [force/length]")
+    warp_stiffness: float | None = Field(default=None, ge=1e-12, le=1e12, description="Ew per width [force/length]")
     weft_stiffness: float | None = Field(
-        default=None, gt=0, le=1e12, description="Ef per width [force/length]; default: that of the warp"
+        default=None, ge=1e-12, le=1e12, description="Ef per width [force/length]; default: that of the warp"
     )
     shear_stiffness: float | None = Field(
-        default=None, gt=0, le=1e12, description="G per width [force/length]; default: that of an isotropic sheet"
+        default=None, ge=1e-12, le=1e12, description="G per width [force/length]; default: that of an isotropic sheet"
     )
     poisson: float | None = Field(
         default=None, gt=-10, lt=10, description="nu, contraction along the weft by tension along the warp [-]; or 0"

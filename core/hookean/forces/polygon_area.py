@@ -86,7 +86,7 @@ class PolygonArea(groups.Grouped):
     lines: Maybe[Lines] = Field(default=None, description="Straight edges; their ends become particles")
     group: Maybe[Labels] = Field(default=None, description="Number of the polygon of each edge; default: all are one")
     stiffness: float = Field(default=1000.0, ge=0, le=1e12, description="K [force/length]")
-    area_factor: float = Field(default=1.0, gt=0, le=1e6, description="Factor on the area at the start [-]")
+    area_factor: float = Field(default=1.0, ge=1e-6, le=1e6, description="Factor on the area at the start [-]")
 
     formula: ClassVar[str] = "E = K (A - A0)²/(2 A0)"
     arity: ClassVar[int] = 2

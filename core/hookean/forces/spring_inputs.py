@@ -34,9 +34,24 @@ def one_way(springs: Springs) -> None:
         raise fault("temperature needs a material with expansion, and a section", "/temperature")
     if springs.tension_only and springs.compression_only:
         raise fault("tension_only and compression_only given; a spring with both has no force: give one of them")
+    if springs.mesh is None and springs.edges != "all":
+        raise fault("edges are those of a mesh; give mesh, or leave edges out", "/edges")
+    _cutoffs_in_order(springs.lower_cutoff, springs.upper_cutoff)
     for only, cutoff in (("tension_only", "lower_cutoff"), ("compression_only", "upper_cutoff")):
         if getattr(springs, only) and np.any(getattr(springs, cutoff)):
             raise fault(f"{only} and {cutoff} given; give one of them")
+
+
+def _cutoffs_in_order(lower: float | Floats, upper: float | Floats) -> None:
+    """A fault where a spring would work at no length."""
+    low, high = np.ravel(lower), np.ravel(upper)
+    if 1 not in (len(low), len(high)) and len(low) != len(high):
+        return  # not as many as elements: reported elsewhere
+    low, high = np.broadcast_arrays(low, high)
+    wrong = np.flatnonzero((high > 0.0) & (low > high))
+    if len(wrong):
+        said = f"{low[wrong[0]]:g} given, above the upper cutoff, {high[wrong[0]]:g}; exchange them"
+        raise fault(said, "/lower_cutoff")
 
 
 def resolved(springs: Springs, places: Places, index: Ints) -> tuple[Floats, Floats]:

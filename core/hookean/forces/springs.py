@@ -221,7 +221,7 @@ def springs_measures(x, indices, parameters, memory, forces, length, force, stra
         rest = parameters[e, 2] * parameters[e, 3] + memory[e, 0]
         length[e] = size
         force[e] = along / size if size > 0.0 else along
-        strain[e] = (size - rest) / rest if rest > 0.0 else 0.0
+        strain[e] = (size - rest) / rest if rest > 1e-300 * size else 0.0  # not more than there are numbers for
 
 
 class Springs(Force):

@@ -22,7 +22,7 @@ class Volume(Enclosed):
     kind: Literal["volume"] = "volume"
     mesh: str = Field(description="Name of a closed mesh")
     stiffness: float = Field(default=1000.0, ge=0, le=1e12, description="K, bulk modulus [force/length^2]")
-    volume_factor: float = Field(default=1.0, gt=0, le=1e6, description="Factor on the volume at the start [-]")
+    volume_factor: float = Field(default=1.0, ge=1e-6, le=1e6, description="Factor on the volume at the start [-]")
 
     formula: ClassVar[str] = "E = K (V - V0)²/(2 V0)"
     example_faces: ClassVar[list[list[int]]] = [[0, 3, 2, 1], [0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]]

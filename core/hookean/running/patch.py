@@ -245,7 +245,7 @@ def changed_forces(scene: Scene, given_values: Mapping[str, Mapping[str, Any]]) 
             changed[number] = type(old).model_validate({**given, **values})
         except ValidationError as error:
             fault = first_fault(error)
-            raise InputError(f"/forces/{key}{fault.pointer}", fault.sentence) from None
+            raise InputError(f"/forces/{key}{fault.pointer}".rstrip("/"), fault.sentence) from None
     return changed
 
 
@@ -266,7 +266,7 @@ def changed_materials(scene: Scene, patch: Patch) -> dict[str, dict[str, Any]]:
             try:
                 found[group][name] = old.model_copy(update=values)
             except InputError as error:
-                raise InputError(f"/{group}/{name}{error.pointer}", error.sentence) from None
+                raise InputError(f"/{group}/{name}{error.pointer}".rstrip("/"), error.sentence) from None
     return found
 
 
@@ -303,4 +303,4 @@ def _settings(system: System, patch: Patch) -> Settings:
         return Settings.model_validate({**kept, **Settings.changes(patch.settings)})
     except ValidationError as error:
         fault = first_fault(error)
-        raise InputError(f"/settings{fault.pointer}", fault.sentence) from None
+        raise InputError(f"/settings{fault.pointer}".rstrip("/"), fault.sentence) from None

@@ -32,6 +32,8 @@ def parse(text: str | bytes | bytearray, where: str = "/") -> Any:
         if isinstance(error, InputError):
             raise
         raise InputError(where, "a whole number with too many digits; write it as a decimal number") from None
+    if re.search(r"\\u[dD][89a-fA-F]", text) and (half := _half_a_character(value)):
+        raise InputError(where, f"{half} is half of a character, which no file can hold; write both halves or neither")
     return value
 
 
@@ -44,6 +46,15 @@ def parse_tables(text: str, name: str = "recipe") -> dict[str, Any]:
         return tomllib.loads(plain)
     except tomllib.TOMLDecodeError as error:
         raise _not_toml(plain, name, str(error)) from None
+
+
+def _half_a_character(value: Any) -> str:
+    """The first surrogate of a text in a value that is not one of a pair, as JSON writes it; else nothing."""
+    try:
+        json.dumps(value, ensure_ascii=False).encode()
+    except UnicodeEncodeError as error:
+        return f"\\u{ord(error.object[error.start]):04x}"
+    return ""
 
 
 def _unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

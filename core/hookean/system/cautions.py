@@ -58,6 +58,9 @@ def cautions(system: System) -> list[str]:
             block = group.of(part)
             index = np.ascontiguousarray(group.particles[part.rows])
             same, closed = np.zeros((2, len(index)), dtype=np.int8)
+            if not len(index):
+                warnings.append(_nowhere(system, part.number))
+                continue
             alike, short = dispatch.compiled(coincide)(system.x, index, _rests(block), touched, same, closed)
             if alike:
                 warnings.append(
@@ -75,6 +78,7 @@ def cautions(system: System) -> list[str]:
         if places is not None and not places.size:
             said = "the anchor holds nothing: no points are given; give some, or remove it"
             warnings.append(f"/anchors/{number}: {said}")
+    warnings += _elsewhere(system)
     for anchor in system.held:
         if not anchor.free.any():
             touched[anchor.particles] = 1
@@ -143,6 +147,39 @@ def turned_faces(system: System, number: int, load: Any) -> str:
         f"(first: faces {owner[first]} and {owner[second]}), so {load.kind_name} pushes to both sides of the mesh; "
         "unify their normals"
     )
+
+
+def _nowhere(system: System, number: int) -> str:
+    """That a force has no elements: none were given, or its mesh has none for it."""
+    force = system.scene.forces[number]
+    mesh = getattr(force, "mesh", None)
+    why = (
+        "no elements are given; give some" if mesh is None else f'mesh "{mesh}" has no element for it; change the mesh'
+    )
+    return f"/forces/{number}: {force.kind_name} acts on nothing: {why}, or remove the force"
+
+
+def _elsewhere(system: System) -> list[str]:
+    """Anchors that hold a particle where they, or earlier ones, do not: the last target counts."""
+    warnings: list[str] = []
+    target, holder = np.full((len(system.x), 3), np.nan), np.full((len(system.x), 3), -1)
+    for anchor in system.held:
+        cells = np.ix_(anchor.particles, np.flatnonzero(anchor.free == 0.0))
+        wanted, earlier, before = anchor.targets[:, cells[1][0]], target[cells], holder[cells]
+        target[cells], holder[cells] = wanted, anchor.number
+        for there, whose in ((earlier, before), (target[cells], holder[cells])):
+            apart = np.argwhere(np.abs(there - wanted) > system.scene.weld_tolerance)
+            if len(apart):
+                row, column = apart[0]
+                other = whose[row, column]
+                warnings.append(
+                    f"/anchors/{anchor.number}: particle {anchor.particles[row]} is held at "
+                    f"{'xyz'[cells[1][0][column]]} = {wanted[row, column]:g}, and by "
+                    f"{'this anchor, too,' if other == anchor.number else f'/anchors/{other}'} at "
+                    f"{there[row, column]:g}; the last counts: give it one target"
+                )
+                break
+    return warnings
 
 
 def without_size(system: System, number: int, load: Force) -> str:

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import base64
 import binascii
+import functools
 import inspect
 import math
 from collections.abc import Mapping
 from itertools import chain
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self
+from types import NoneType, UnionType
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Self, Union, get_args, get_origin
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +22,7 @@ from pydantic import (
     PlainValidator,
     ValidationError,
     WithJsonSchema,
+    model_validator,
 )
 from pydantic_core import PydanticCustomError
 
@@ -48,6 +51,20 @@ class Model(BaseModel, metaclass=OneError):
         validate_default=True,
         defer_build=True,  # of a hundred models a scene has ten: the others cost a program that starts half a second
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _as_the_schema_has_it(cls, given: Any) -> Any:
+        """No text for a number, no true or false for one, and no number or text for true or false: pydantic would
+        convert them, and `"tolerance": true` would be a tolerance of 1."""
+        for name, value in given.items() if isinstance(given, dict) else ():
+            if isinstance(value, bool | int | str) and name in cls.model_fields:
+                expected = _plain_kind(cls, name)
+                if expected is float and isinstance(value, bool | str):
+                    raise fault(f"{_named_kind(value)} given; a number expected", f"/{name}")
+                if expected is bool and not isinstance(value, bool):
+                    raise fault(f"{_named_kind(value)} given; true or false expected", f"/{name}")
+        return given
 
     @classmethod
     def __pydantic_init_subclass__(cls, **kwargs: Any) -> None:
@@ -87,6 +104,20 @@ class Model(BaseModel, metaclass=OneError):
         return super().model_copy(update=values)
 
 
+@functools.cache
+def _plain_kind(model: type[BaseModel], name: str) -> type | None:
+    """float where a field holds numbers alone, bool where it holds true or false alone (or nothing); else None."""
+    hint = model.model_fields[name].annotation
+    kinds = set(get_args(hint) if get_origin(hint) in (Union, UnionType) else [hint]) - {NoneType}
+    if kinds and kinds <= {int, float}:
+        return float
+    return bool if kinds == {bool} else None
+
+
+def _named_kind(value: bool | int | str) -> str:
+    return "a text" if isinstance(value, str) else str(value).lower()
+
+
 def fault(sentence: str, at: str = "") -> PydanticCustomError:
     """A validation error; `at` is the rest of the pointer inside the field, such as `/17/2`."""
     return PydanticCustomError("column", "{sentence}", {"sentence": sentence, "at": at})
@@ -99,7 +130,7 @@ def _decoded(value: Any) -> NDArray[Any]:
             raise fault('an array given as an object has exactly the keys "dtype", "shape" and "base64"')
         return _from_buffer(value["dtype"], value["shape"], value["base64"])
     if isinstance(value, str | bytes) or value is None:
-        raise fault(f"{type(value).__name__} given where numbers are expected")
+        raise fault(f"{'null' if value is None else 'a text'} given where numbers are expected")
     if isinstance(value, list | tuple) and _mixes_truth(value):
         raise fault("whole or decimal numbers are expected, not true or false", _truth(value))
     try:
@@ -155,6 +186,8 @@ def _first(mask: NDArray[Any]) -> str:
 
 def _real(value: Any) -> NDArray[np.float64]:
     array = _decoded(value)
+    if array.dtype == object and all(type(item) in (int, float) for item in array.flat):
+        raise fault(f"larger than the limit, {LARGEST:g}", _first(abs(array) > LARGEST))  # whole, and of no type
     if array.dtype == object or array.dtype.kind not in "fiu":
         raise fault("numbers are expected, not text, true, false or null", _odd(value))
     array = np.array(array, dtype=np.float64, order="C")

@@ -13,6 +13,8 @@ from pydantic import BaseModel, ValidationError
 
 from hookean.errors import InputError, several
 
+SUGGESTED = 100  # faults with a nearest known name: to look for it takes as long as to read a force
+
 
 def first_fault(error: ValidationError) -> InputError:
     """The faults of a validation error as one; its sentence is the first one and has how many more there are."""
@@ -24,14 +26,19 @@ def faults(error: ValidationError) -> list[InputError]:
     found = []
     kinds = {model.called for model in _models() if "kind" in model.model_fields}
     root = next((model for model in _models() if model.__name__ == error.title), None)
-    for entry in error.errors(include_url=False):
+    for number, entry in enumerate(error.errors(include_url=False)):
         context = entry.get("ctx", {})
-        steps = [str(step) for step in _pointed(entry["loc"], kinds)]
+        steps = [_cut(str(step)) for step in _pointed(entry["loc"], kinds)]
         pointer = "".join(f"/{step.replace('~', '~0').replace('/', '~1')}" for step in steps)
         pointer += str(context.get("at", ""))
-        sentence = str(context.get("sentence") or _sentence(entry, root))
+        sentence = str(context.get("sentence") or _sentence(entry, root if number < SUGGESTED else None))
         found.append(InputError(pointer or "/", sentence))
     return found
+
+
+def _cut(name: str) -> str:
+    """A name without its end where it is longer than any of ours."""
+    return name if len(name) <= 200 else f"{name[:200]}..."
 
 
 def _pointed(place: tuple[int | str, ...], kinds: set[str]) -> Iterator[int | str]:
@@ -61,7 +68,9 @@ def _sentence(entry: Any, root: Any) -> str:
     if kind == "union_tag_not_found":
         return f"kind is required; known: {', '.join(option.called for option in _options(root, entry['loc']))}"
     if kind == "literal_error":
-        allowed = re.findall(r"'([^']*)'", context["expected"])
+        allowed = [option or '""' for option in re.findall(r"'([^']*)'", context["expected"])]
+        if not isinstance(entry["input"], str):
+            return f"{given} given; a text expected, one of {', '.join(allowed)}"
         return f"{given} given; {_meant(str(entry['input']), allowed, 'allowed:', always=True)}"
     for rule, key, words in _LIMITS:
         if kind == rule:
@@ -93,7 +102,7 @@ _EXPECTED = {
 
 def _meant(given: Any, known: list[str], introduction: str, *, always: bool = False) -> str:
     """The nearest known name as a question, or all of them; with `always` both."""
-    near = difflib.get_close_matches(str(given).lower(), {n.lower(): n for n in known}, 1)
+    near = difflib.get_close_matches(str(given)[:60].lower(), {n.lower(): n for n in known}, 1)
     nearest = next((n for n in known if near and n.lower() == near[0]), None)
     listed = f"{introduction} {', '.join(known)}"
     if nearest is None:

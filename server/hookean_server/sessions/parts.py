@@ -170,13 +170,13 @@ def _replace(simulation: Simulation, name: str, value: dict[str, Any], gesture: 
         try:
             simulation.draw(given, gesture=gesture)
         except InputError as error:
-            raise InputError(f"/draw{error.pointer}", error.sentence) from None
+            raise InputError(f"/draw{error.pointer}".rstrip("/"), error.sentence) from None
         return
     scene = simulation.edited_scene()
     try:
         units = scene.units.model_copy(update=given)
     except InputError as error:
-        raise InputError(f"/units{error.pointer}", error.sentence) from None
+        raise InputError(f"/units{error.pointer}".rstrip("/"), error.sentence) from None
     simulation.replace(scene.replaced(units=units), gesture=gesture)
 
 
