@@ -72,3 +72,21 @@ def test_signatures_name_types_as_the_source_does(kind: type[Model]) -> None:
     fields = inspect.signature(kind).parameters
     assert fields["kind"].annotation == f"Literal['{kind.called}']"
     assert {"length": "NonNegatives", "area": "float"}[list(fields)[1]] == fields[list(fields)[1]].annotation
+
+
+def test_one_thread_at_a_time_builds_a_model() -> None:
+    """While another model is being built a thread that needs one waits."""
+    import threading
+
+    from hookean.values import columns
+
+    class Strut(Bar):
+        pass
+
+    with columns._BUILDING:
+        waiting = threading.Thread(target=Strut, kwargs={"area": 2.0})
+        waiting.start()
+        waiting.join(0.05)
+        assert waiting.is_alive() and not Strut.__pydantic_complete__
+    waiting.join()
+    assert Strut.__pydantic_complete__
