@@ -24,6 +24,8 @@ from hookean.system.system import compile
 
 Floats = NDArray[np.float64]
 
+ALONG = 1e-6  # part of a slope by places that counts as one along a film
+
 
 @dataclass
 class Sensitivity:
@@ -78,6 +80,8 @@ def sensitivity(problem: Any, goals: Any = None, variables: Any = None) -> Sensi
         raise InputError("/scene", f"the tangent at the equilibrium is singular; {found.result.message}")
     parts = [gradient[s].reshape(v.shape) for v, s in zip(unknowns.variables, unknowns.slices, strict=True)]
     said = warnings(found) + unknowns.differing
+    if found.system.films is not None:
+        said += _along(found, _summed(found, unknowns, quantities, weights)[0])
     if unknowns.clipped:
         said.append(f"{unknowns.clipped} values of the scene are beyond the bounds; the shape has them at the bounds")
     return Sensitivity(float(total), parts, values, [v.title for v in problem.variables], said, found.result)
@@ -87,6 +91,17 @@ def gradients(
     found: Equilibrium, unknowns: Unknowns, quantities: list[tuple[Quantity, str]], weights: list[Floats]
 ) -> Floats:
     """The derivative (u,) of the sum of weights x values of quantities, by one solve."""
+    by_place, by_unknown = _summed(found, unknowns, quantities, weights)
+    adjoint = found.solve(by_place, transposed=True)
+    if len(led := unknowns.led):
+        by_unknown += unknowns.lead(by_place - found.resisted(adjoint, led))
+    return np.asarray(unknowns.work(found, adjoint.reshape(-1, 3)) + by_unknown)
+
+
+def _summed(
+    found: Equilibrium, unknowns: Unknowns, quantities: list[tuple[Quantity, str]], weights: list[Floats]
+) -> tuple[Floats, Floats]:
+    """Derivatives of that sum by places (3n,) and, at fixed places, by unknowns (u,)."""
     by_place, by_unknown = np.zeros(found.x.size), np.zeros(unknowns.count)
     for (quantity, pointer), weight in zip(quantities, weights, strict=True):
         placed, direct = quantity.slopes(found, unknowns, pointer)
@@ -94,10 +109,7 @@ def gradients(
             weight = weight - weight.mean()
         by_place += placed.T @ weight
         by_unknown += direct.T @ weight
-    adjoint = found.solve(by_place, transposed=True)
-    if len(led := unknowns.led):
-        by_unknown += unknowns.lead(by_place - found.resisted(adjoint, led))
-    return np.asarray(unknowns.work(found, adjoint.reshape(-1, 3)) + by_unknown)
+    return by_place, by_unknown
 
 
 def jacobian(found: Equilibrium, unknowns: Unknowns, quantities: list[tuple[Quantity, str]]) -> Floats:
@@ -134,3 +146,17 @@ def warnings(found: Equilibrium) -> list[str]:
     said += [f"{kind} have yielded; derivatives are those of elastic behaviour from here on" for kind in found.yielded]
     said += found.resting.said + kinks(found)
     return said
+
+
+def _along(found: Equilibrium, by_place: Floats) -> list[str]:
+    """A sentence where goals depend on where in a soap film its vertices lie: derivatives are those across it, while a
+    whole solve also moves vertices along it, as they were led there."""
+    films, slopes = found.system.films, by_place.reshape(-1, 3)
+    assert films is not None
+    along = np.abs(films.along(found.x, found.state.free, slopes)).max(initial=0.0)
+    if along <= ALONG * np.abs(slopes).max(initial=0.0):
+        return []
+    return [
+        "goals depend on where in a soap film its vertices lie; derivatives are those across it, which differ from"
+        " those of whole solves by the error of the mesh"
+    ]

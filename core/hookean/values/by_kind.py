@@ -36,7 +36,8 @@ class ByKind:
 
     @cached_property
     def _union(self) -> TypeAdapter[Any]:
-        return TypeAdapter(Annotated[Union[tuple(self._models.values())], Field(discriminator="kind")])  # noqa: UP007
+        union: Any = Annotated[Union[tuple(self._models.values())], Field(discriminator="kind")]  # noqa: UP007
+        return TypeAdapter(union)
 
 
 @cache

@@ -7,6 +7,7 @@ import binascii
 import functools
 import inspect
 import math
+import threading
 from collections.abc import Mapping
 from itertools import chain
 from types import NoneType, UnionType
@@ -33,6 +34,8 @@ if TYPE_CHECKING:
     from hookean.values.fields import Column
 
 LARGEST = 1e12  # beyond this, squares of lengths and products with stiffness lose all meaning in float64
+
+_BUILDING = threading.RLock()
 
 
 class Model(BaseModel, metaclass=OneError):
@@ -74,6 +77,14 @@ class Model(BaseModel, metaclass=OneError):
         cls.called = cls.__dict__.get("called", cls.__name__.lower())
         written = inspect.get_annotations(cls)
         cls.__annotations__ = {name: text for name, text in written.items() if name not in cls.__class_vars__}
+
+    @classmethod
+    def model_rebuild(cls, *, _parent_namespace_depth: int = 2, **given: Any) -> bool | None:
+        """Build it, one thread at a time: the oldest pydantic that is allowed has no lock of its own."""
+        if cls.__pydantic_complete__ and not given.get("force"):
+            return None
+        with _BUILDING:
+            return super().model_rebuild(_parent_namespace_depth=_parent_namespace_depth + 1, **given)
 
     @classmethod
     def read(cls, value: Any) -> Self:
