@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hookean import Scene, relax
+from hookean import Scene, load_cases, relax
 from hookean.compiled import dispatch
 from hookean.forces import capstan_tangent
 from hookean.forces.capstan import RUN_WAY, TABLE
@@ -71,3 +71,29 @@ def test_newton_steps_come_to_the_shape_of_relaxation(mu: float) -> None:
     assert all(one.converged and one.stability == "unknown" for one in found)
     assert found[0].iterations <= 20 < found[1].iterations
     np.testing.assert_allclose(found[0].particles, found[1].particles, atol=3e-9 * 6.0)
+
+
+def test_what_cables_with_friction_carry_balances_in_every_case() -> None:
+    """Reactions, elastic supports and loads, forces and moments, to 1e-9 of their size at the default tolerance: cases
+    end with whole Newton steps. Friction takes no part from outside."""
+    scene = Scene(
+        particles=[[0, 0, 0], [1, 0, 1], [3, 0, 1.5], [4, 0, 0]],
+        forces=[
+            {"kind": "sliding_cable", "particles": [[0, 1], [1, 2], [2, 3]], "axial_stiffness": 1e4, "force": 10.0,
+             "friction": 0.15},
+            {"kind": "unary", "name": "p", "particles": [1], "vector": [0, 0.5, 3]},
+            {"kind": "support", "particles": [1, 2], "stiffness": [100.0, 100.0, 100.0]},
+        ],
+        anchors=[{"particles": [0, 3]}],
+        load_cases={"p": {"forces": ["p"]}},
+        combinations={"more": {"p": 4.0}, "back": {"p": -2.0}},
+    )  # fmt: skip
+    for case in load_cases(scene).cases.values():
+        found = case.result
+        assert found.converged and found.stability == "unknown"
+        props = next(entry for entry in found.forces if entry["kind"] == "support")["force"]
+        at = np.concatenate([found.particles[[0, 3]], found.particles[[1, 2]], found.particles[[1]]])
+        what = np.concatenate([found.reactions["force"], props, found.loads["resultant"]])
+        size = np.abs(what).sum()
+        np.testing.assert_allclose(what.sum(axis=0), 0.0, atol=1e-9 * size)
+        np.testing.assert_allclose(np.cross(at, what).sum(axis=0), 0.0, atol=4e-9 * size)

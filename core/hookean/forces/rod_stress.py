@@ -60,10 +60,10 @@ def stress_stiffness(pieces: Block, x: Floats, moved: Floats) -> Floats:
 def _spin(parts: Parts, table: Floats) -> Floats:
     """How the spin that all sections of a piece share goes with its particles (k, 3 a): by its least energy, and of
     rods that are straight at rest half of what the frame spins from their start to their end."""
-    rigid, rests = table[:, HEAD + RIGID :: WIDTH], np.zeros(parts.sizes.shape)
+    rigid, rests = table[:, HEAD + RIGID :: WIDTH], np.zeros_like(parts.sizes)
     for c in range(3):
         rests += table[:, HEAD + REST + c :: WIDTH] ** 2
-    total = rests.shape[1] * (rigid * rests).sum(axis=1)
+    total = parts.phase.shape[1] * (rigid * rests).sum(axis=1)
     sided = spinning(table, parts.sizes) & (total >= STRAIGHT**2 * rigid.sum(axis=1))
     found = np.zeros((len(table), parts.phase.shape[2]))
     found[sided] = -parts.slope()[sided] / parts.sizes[sided].sum(axis=1)[:, None]

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean.linear.unsymmetric import skew_part, solve
 from hookean.stability.equilibrium import LARGEST_FACTOR, movable
 from hookean.system.balance import LOAD, Balance, balance
 
@@ -36,7 +37,7 @@ def finer(system: System, state: State, found: Balance, method: Solver) -> Balan
     for _ in range(STEPS):
         before, largest = state.x, float(np.abs(found.forces).max(initial=0.0))
         small = np.abs(found.forces).sum() <= FINE * _acting(found)
-        step = None if small else _exact_step(system, state, found, method)
+        step = None if small else _exact_step(system, state, found, method, steps=True)
         if step is None:
             return found
         state.x = before + step
@@ -72,9 +73,10 @@ def exact_reactions(system: System, state: State, found: Balance, method: Solver
     return np.asarray(found.reactions + pull * (1.0 - state.free))
 
 
-def _exact_step(system: System, state: State, found: Balance, method: Solver) -> Floats | None:
-    """The movement (n, 3) that would end what is out of balance: K dx = r; None where no such step is known."""
-    plain = system.films is None and not system.contacts and not system.no_tangent(sparse=False)
+def _exact_step(system: System, state: State, found: Balance, method: Solver, *, steps: bool = False) -> Floats | None:
+    """The movement (n, 3) that would end what is out of balance: K dx = r; None where no such step is known. `steps`:
+    whether a tangent that Newton steps can use is enough."""
+    plain = system.films is None and not system.contacts and not system.no_tangent(sparse=False, steps=steps)
     free, _ = movable(system, state, found)
     if not plain or np.count_nonzero(free) > LARGEST_FACTOR:
         return None
@@ -82,5 +84,8 @@ def _exact_step(system: System, state: State, found: Balance, method: Solver) ->
 
     pattern = patterned(system, state, free, method.pattern)
     factor = pattern.factors.factor(pattern.tangent(system, state))  # that of an unstable shape does as well
-    moved = None if factor is None else factor.solve(pattern.gather(found.forces))
-    return None if moved is None or not np.isfinite(moved).all() else np.asarray(pattern.spread(moved))
+    if factor is None:
+        return None
+    skew, left = skew_part(system, state, pattern.dofs), pattern.gather(found.forces)
+    moved = factor.solve(left) if skew is None else solve(factor.solve, skew, left)
+    return None if not np.isfinite(moved).all() else np.asarray(pattern.spread(moved))

@@ -134,7 +134,7 @@ def turned_faces(system: System, number: int, load: Any) -> str:
     both sides of the mesh. Empty where all is well; edges of more than two faces have no side."""
     faces = system.places.faces(load.mesh)
     sides = np.stack([faces, np.roll(faces, -1, axis=1)], axis=-1)
-    kept = (sides[:, :, 0] != sides[:, :, 1]) & (faces >= 0).all(axis=1)[:, None]
+    kept = (sides[:, :, 0] != sides[:, :, 1]) & (faces.min(axis=1, initial=0) >= 0)[:, None]
     owner, (one, other) = np.nonzero(kept)[0], sides[kept].T
     keys = np.array([one, np.minimum(one, other)]) * len(system.x) + [other, np.maximum(one, other)]
     ways, edges = (np.unique(key, return_inverse=True, return_counts=True)[1:] for key in keys)  # rows are slower
