@@ -10,7 +10,7 @@ from uuid import UUID
 import numpy as np
 import pytest
 
-from canvas.kangaroo_samples import ANCHOR, LENGTH, SOLVER, Kangaroo, wires
+from canvas.kangaroo_samples import ANCHOR, LENGTH, SOLVER, Kangaroo, star, wires
 from canvas.test_import_run import SOFT, places, ran
 from hookean.errors import InputError
 from hookean_canvas.archive import Type
@@ -185,3 +185,8 @@ def test_the_corners_of_a_part_are_particles_of_its_body(tmp_path: Path) -> None
     every = [(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)] + [(0.0, 2.0, 0.0)]
     far = [min(np.linalg.norm(found - place, axis=1)) for place in np.array(every)]
     assert max(far) < 1e-3 and len(found) == 9, found
+
+
+def test_a_file_that_is_not_translated_yet_says_what_to_do() -> None:
+    with pytest.raises(InputError, match=r"1 x Solver: it is of Kangaroo2 Components; translate the file first, with"):
+        Canvas(graph.of(star().archive()))
