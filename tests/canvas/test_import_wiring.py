@@ -220,3 +220,12 @@ def test_a_mesh_at_an_input_for_meshes_goes_straight_in() -> None:
     typed = (("Points", None), ("Mesh", None), ("Strength", 1.0))
     d.solved(d.kangaroo("OnMesh", typed, ["P"], points=d.point(3, 0, 0), mesh=d.native("Graft Tree", tree=ball)))
     assert "Mesh" not in [part.name for part in parts(kangaroo.translate(d.archive())[0])]
+
+
+def test_a_point_at_an_input_for_planes_is_the_horizontal_plane_through_it(tmp_path: Path) -> None:
+    """Grasshopper's own conversion; the point at z = 3 comes to z = 1."""
+    d = Kangaroo("plane", "Plane", "A plane by a point.")
+    typed = (("Points", None), ("Plane", None), ("Strength", 1.0))
+    goal = d.kangaroo("OnPlane", typed, ["P"], points=d.point(2, 5, 3), plane=d.point(0, 0, 1))
+    d.panel("particles", d.solved(goal, reset=d.toggle("Reset", False))["V"])
+    np.testing.assert_allclose(places(ran(d, tmp_path)), [[2.0, 5.0, 1.0]], atol=1e-6)
