@@ -10,7 +10,7 @@ from uuid import UUID
 import numpy as np
 import pytest
 
-from canvas.kangaroo_samples import ANCHOR, LENGTH, SOLVER, Kangaroo, wires
+from canvas.kangaroo_samples import ANCHOR, LENGTH, SOLVER, Kangaroo, star, wires
 from canvas.test_import_run import SOFT, places, ran
 from hookean.errors import InputError
 from hookean_canvas.archive import Type
@@ -185,3 +185,47 @@ def test_the_corners_of_a_part_are_particles_of_its_body(tmp_path: Path) -> None
     every = [(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)] + [(0.0, 2.0, 0.0)]
     far = [min(np.linalg.norm(found - place, axis=1)) for place in np.array(every)]
     assert max(far) < 1e-3 and len(found) == 9, found
+
+
+def test_a_file_that_is_not_translated_yet_says_what_to_do() -> None:
+    with pytest.raises(InputError, match=r"1 x Solver: it is of Kangaroo2 Components; translate the file first, with"):
+        Canvas(graph.of(star().archive()))
+
+
+@pytest.mark.parametrize("by", ["component", "parameter", "list"])
+def test_a_brep_at_an_input_for_meshes_becomes_a_mesh_as_in_grasshopper(by: str, tmp_path: Path) -> None:
+    """A point at x = 3 is pulled onto a box of 2 around the origin, by its side at x = 2; the wire is kept."""
+    d = Kangaroo(f"brep {by}", "Brep", "A point on a Brep.")
+    box = d.native("Center Box", base=d.native("XY Plane", origin=d.point(0, 0, 0)), x=2, y=2, z=2)["Box"]
+    if by == "parameter":
+        box = d.parameter("Brep", "Solid", source=box)["out"]
+    if by == "list":
+        box = d.native(
+            "Merge", data_1=d.native("Move", geometry=box, motion=d.native("Unit Z", factor=0.1))["Geometry"]
+        )
+    typed = (("Points", None), ("Mesh", None), ("Strength", 1.0))
+    goal = d.kangaroo("OnMesh", typed, ["P"], points=d.point(3, 0.2, 0.1), mesh=box)
+    d.panel("particles", d.solved(goal, reset=d.toggle("Reset", False))["V"])
+    before = wires(d.archive())
+    root, report = kangaroo.translate(d.archive())
+    assert (report.lost, report.kept) == ([], len(before))
+    names = [part.name for part in parts(root)]
+    assert names.count("Mesh") == 1
+    np.testing.assert_allclose(places(ran(d, tmp_path)), [[2.0, 0.2, 0.1]], atol=1e-6)
+
+
+def test_a_mesh_at_an_input_for_meshes_goes_straight_in() -> None:
+    d = Kangaroo("mesh", "Mesh", "A point on a mesh.")
+    ball = d.native("Mesh Sphere", base=d.native("XY Plane", origin=d.point(0, 0, 0)), radius=2)
+    typed = (("Points", None), ("Mesh", None), ("Strength", 1.0))
+    d.solved(d.kangaroo("OnMesh", typed, ["P"], points=d.point(3, 0, 0), mesh=d.native("Graft Tree", tree=ball)))
+    assert "Mesh" not in [part.name for part in parts(kangaroo.translate(d.archive())[0])]
+
+
+def test_a_point_at_an_input_for_planes_is_the_horizontal_plane_through_it(tmp_path: Path) -> None:
+    """Grasshopper's own conversion; the point at z = 3 comes to z = 1."""
+    d = Kangaroo("plane", "Plane", "A plane by a point.")
+    typed = (("Points", None), ("Plane", None), ("Strength", 1.0))
+    goal = d.kangaroo("OnPlane", typed, ["P"], points=d.point(2, 5, 3), plane=d.point(0, 0, 1))
+    d.panel("particles", d.solved(goal, reset=d.toggle("Reset", False))["V"])
+    np.testing.assert_allclose(places(ran(d, tmp_path)), [[2.0, 5.0, 1.0]], atol=1e-6)

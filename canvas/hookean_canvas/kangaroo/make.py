@@ -125,7 +125,7 @@ HELPERS = {
         "Planes",
         "Origins and normals of planes",
         PLANE,
-        (Slot("_planes", "Planes", 1),),
+        (Slot("_planes", "Planes", 1, "plane"),),
         (Slot("origin", "Origins"), Slot("normal", "Normals")),
     ),
     "*lines": Recipe(

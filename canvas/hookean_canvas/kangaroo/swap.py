@@ -13,6 +13,7 @@ from hookean_canvas.archive.parts import Part, bounds_of, inputs, outputs, sourc
 from hookean_canvas.definitions import containers
 from hookean_canvas.definitions.containers import Slot, wire
 from hookean_canvas.kangaroo import make
+from hookean_canvas.kangaroo.faces import are_faces, takes_meshes
 from hookean_canvas.kangaroo.ids import Known, key
 from hookean_canvas.kangaroo.pieces import Piece, Swap
 from hookean_canvas.kangaroo.recipe import Recipe
@@ -173,6 +174,8 @@ class Swapping:
         wired = sources(old)
         if old.value("InternalExpression"):
             return self._express(old, port, slot)
+        if takes_meshes(slot.name, names_of(old)) and any(are_faces(self.whole.streams, one) for one in wired):
+            return self._mesh(old, port)
         _copy_modifiers(old, port)
         if wired and self._measures(old, slot):
             wired = [self._length(port, wired)]
@@ -206,6 +209,15 @@ class Swapping:
         _copy_modifiers(old, chunk)
         connect(chunk, sources(old))
         self._beside(port, guid, chunk, box)
+
+    def _mesh(self, old: Chunk, port: Chunk) -> None:
+        """A parameter that makes meshes of what is wired, as an input of Kangaroo's does; it takes over the id."""
+        given: UUID = port.value("InstanceGuid")
+        port.put("InstanceGuid", Type.GUID, uuid5(given, "in meshed"))
+        chunk = containers.parameter(given, PARAMETERS["Mesh"], "Mesh", [])
+        _copy_modifiers(old, chunk)
+        connect(chunk, sources(old))
+        self._beside(port, PARAMETERS["Mesh"], chunk, size([], ["Mesh"]))
 
     def _measures(self, old: Chunk, slot: Slot) -> bool:
         """Whether a length is wired from the very curves it is the length of; Grasshopper measures them."""

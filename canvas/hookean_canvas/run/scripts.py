@@ -25,7 +25,7 @@ SCRIPTS = (PYTHON3_SCRIPT, SCRIPT, GHPYTHON_SCRIPT)
 
 _KINDS = {
     "float": "number", "int": "integer", "bool": "boolean", "str": "text", "point": "point", "vector": "vector",
-    "line": "line", "curve": "curve", "mesh": "mesh",
+    "line": "line", "curve": "curve", "mesh": "mesh", "plane": "plane",
 }  # fmt: skip
 
 

@@ -31,6 +31,8 @@ PASSING = ("Data Recorder",)
 """Objects that are known by their names and hand on what they get."""
 
 
+TRANSLATED = ("kangaroo", "k2engineering")
+"""How names of the plug-ins begin whose components `hookean canvas import` translates."""
 ENGINE = "Hookean Engine"
 CARRIED = "geometry_"
 """The input of an Engine for what moves with the particles."""
@@ -143,4 +145,6 @@ def _strange(node: Node) -> str:
         return why_closed(node)
     if node.name in REASONS:
         return REASONS[node.name]
+    if node.library.lower().startswith(TRANSLATED):
+        return f"it is of {node.library}; translate the file first, with `hookean canvas import`"
     return f"the plug-in {node.library} has no stand-in" if node.library else f"{node.guid} has no stand-in"

@@ -110,8 +110,8 @@ def cautions(system: System) -> list[str]:
 def closed_up(places: Welded) -> list[str]:
     """Meshes with edges whose ends became one particle, as a mesh in millimetres has them where the unit is a metre."""
     found = []
-    wanted = dict.fromkeys(str(f.mesh) for f in places.scene.forces if f.role != "load" and getattr(f, "mesh", None))
-    for name in wanted:
+    named = (getattr(force, "mesh", None) for force in places.scene.forces if force.role != "load")
+    for name in dict.fromkeys(str(mesh) for mesh in named if mesh is not None):
         mesh = places.scene.meshes[name]
         ends = np.stack([mesh.faces, np.roll(mesh.faces, -1, axis=1)], axis=2).reshape(-1, 2)
         at = places.vertices(name)[ends]
