@@ -206,6 +206,13 @@ def test_a_phone_draws_by_taps(open_studio: Opened) -> None:
         page.touchscreen.tap(x, y)
     drawn(studio, 2)
     assert np.abs(studio.particles() - [[0, 0, 0], [2, 0, 0]]).max() == 0
+    studio.press("Undo")  # takes the corner back, too: the line goes on from the first one
+    drawn(studio, 1)
+    x, y = next(spots(studio, [0, 1, 0]))
+    page.touchscreen.tap(x, y)
+    drawn(studio, 2)
+    assert studio.service.scene(studio.key)["forces"][0]["particles"] == [[0, 1]]
+    assert np.abs(studio.particles() - [[0, 0, 0], [0, 1, 0]]).max() == 0
     page.get_by_text("Change what is selected").click()
     assert page.evaluate("() => document.documentElement.scrollWidth") <= PHONE["width"]
     assert not violations(studio)

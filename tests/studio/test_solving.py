@@ -35,6 +35,7 @@ def test_a_model_drawn_in_mm_and_read_in_m_is_repaired_and_the_repair_undone(tab
     """10 km long is larger than anything built: the button reads the same numbers in mm."""
     tab.service.put("repair-unit", family("cable", span=10_000.0).model_dump(mode="json"))
     tab.open("repair-unit")
+    tab.page.get_by_text("The model is 10000 m long: its lengths may be meant in mm.").wait_for()
     tab.press("Unit: mm")
     tab.until(lambda: tab.service.scene("repair-unit")["units"]["length"] == "mm")
     assert tab.service.scene("repair-unit")["particles"][-1] == [10_000.0, 0.0, 0.0]

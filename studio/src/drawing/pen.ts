@@ -1,5 +1,5 @@
 // The pen: corners that were put, what they become, and the edits that make it. Each is undone by itself.
-import { computed, signal } from "@preact/signals";
+import { computed, effect, signal } from "@preact/signals";
 import { gesture } from "../hand";
 import type { Draw, Patch, Point, SceneForce, Summary } from "../model";
 import type { Session } from "../session";
@@ -32,7 +32,14 @@ export class Pen {
   faces: () => Made | string = () => null;
   private queue: Promise<void> = Promise.resolve();
 
-  constructor(private readonly session: Session) {}
+  constructor(private readonly session: Session) {
+    // Undo takes corners back with their particles; the line goes on from the one before
+    effect(() => {
+      const count = session.topology.value?.particles ?? 0;
+      const left = this.corners.peek().filter(({ particle }) => particle < count);
+      if (left.length < this.corners.peek().length) this.corners.value = left;
+    });
+  }
 
   choose(mode: Mode): void {
     this.mode.value = mode;

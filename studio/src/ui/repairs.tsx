@@ -9,6 +9,8 @@ import { counted, said } from "./words";
 
 interface Repair {
   seen: string;
+  /** Why it is offered, where nothing else on the page reports that. */
+  why?: string;
   hint?: string;
   patch: Patch;
   done: string;
@@ -24,6 +26,7 @@ export function Repairs({ session }: { session: Session }) {
   return (
     <div class="repairs" role="group" aria-label="Repairs">
       {loose && <p>Nothing is held: hold some particles, or pick one and pin it under Picked.</p>}
+      {found.map(({ why }) => why && <p key={why}>{why}</p>)}
       {found.map(({ seen, hint, patch, done }) => (
         <button
           key={seen}
@@ -93,7 +96,8 @@ function ofSize(topology: Topology, { units }: Scene): Repair[] {
   return [
     {
       seen: "Unit: mm",
-      hint: `The model is ${said(size, 3)} ${units.length} long; all lengths are read in mm instead, numbers stay`,
+      why: `The model is ${said(size, 3)} ${units.length} long: its lengths may be meant in mm.`,
+      hint: "All lengths are read in mm instead, numbers stay",
       patch: { units: { length: "mm" } },
       done: `All lengths are in mm: the model is ${said(size * 1e-3, 3)} m long. Forces per length keep their numbers.`,
     },

@@ -2,7 +2,7 @@
 import { useSignal } from "@preact/signals";
 import type { Topology } from "../model";
 import { enclosedBy } from "./selecting";
-import { joined, nameOf, present, rimOf, strip } from "../view/faces";
+import { joined, present, rimOf, strip } from "../view/faces";
 import { facesOf } from "../view/form";
 import type { Studio } from "./studio";
 import { numbered } from "./targets";
@@ -85,7 +85,6 @@ export function SelectedFaces({ studio }: { studio: Studio }) {
 /** All faces of a mesh, by its name. */
 function PartOf({ topology, choose }: { topology: Topology; choose: (faces: number[][]) => void }) {
   const names = Object.keys(topology.meshes);
-  const known = new Map(facesOf(topology).map((face) => [nameOf(face), face]));
   return (
     <label class="field" title="All faces of a mesh, by its name">
       <span>A mesh</span>
@@ -95,7 +94,7 @@ function PartOf({ topology, choose }: { topology: Topology; choose: (faces: numb
         disabled={!names.length}
         onChange={(event) => {
           const mesh = topology.meshes[event.currentTarget.value];
-          if (mesh) choose(mesh.faces.map((face) => known.get(nameOf(face)) ?? face));
+          if (mesh) choose(mesh.faces);
         }}
       >
         <option value="">choose one</option>

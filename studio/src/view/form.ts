@@ -38,13 +38,24 @@ export function form(topology: Topology): Form {
     strokes: Int32Array.from(strokes),
     faces: all,
     triangles: triangles(all),
-    face: (triangle) => all[owners(all)[triangle]!] ?? null,
+    face: (triangle) => faceOf(all, triangle),
     spacing: median(topology, ends),
   };
 }
 
+type Meshes = Pick<Topology, "meshes" | "geometry">;
+
+/** Faces of each topology, found once: a topology is replaced, not changed. */
+const found = new WeakMap<Meshes, number[][]>();
+
 /** Faces of all meshes, each once, by particles. A mesh that is carried is mostly one that forces act on, too. */
-export function facesOf(topology: Pick<Topology, "meshes" | "geometry">): number[][] {
+export function facesOf(topology: Meshes): number[][] {
+  const known = found.get(topology) ?? distinct(topology);
+  found.set(topology, known);
+  return known;
+}
+
+function distinct(topology: Meshes): number[][] {
   const carried = topology.geometry
     .filter((item) => item.kind === "mesh" && item.faces)
     .map((item) => {
@@ -52,14 +63,14 @@ export function facesOf(topology: Pick<Topology, "meshes" | "geometry">): number
       return item.faces!.map((face) => face.map((corner) => riders[corner] ?? -1));
     });
   const seen = new Set<string>();
-  const found: number[][] = [];
+  const all: number[][] = [];
   for (const face of [...Object.values(topology.meshes).map((mesh) => mesh.faces), ...carried].flat()) {
     const name = face.join();
     if (face.some((corner) => corner < 0) || seen.has(name)) continue;
     seen.add(name);
-    found.push(face);
+    all.push(face);
   }
-  return found;
+  return all;
 }
 
 /** Pairs of neighbours on polylines, curves and lines. */
@@ -74,8 +85,11 @@ function pieces(topology: Topology): [number, number][] {
   return found;
 }
 
-/** The number of the face of each triangle. */
-const owners = (all: number[][]) => all.flatMap((face, i) => (isFour(face) ? [i, i] : [i]));
+/** The face that a triangle is of. */
+function faceOf(all: number[][], triangle: number): number[] | null {
+  let count = 0;
+  return triangle < 0 ? null : (all.find((face) => (count += isFour(face) ? 2 : 1) > triangle) ?? null);
+}
 
 const isFour = ([, , c, d]: number[]) => d !== undefined && d !== c;
 

@@ -48,6 +48,7 @@ export class Skin {
 
   /** Other faces, in front of the rest. */
   put(triangles: Uint32Array): void {
+    this.mesh.geometry.dispose(); // its buffers; they are made again when it is drawn
     this.mesh.geometry.setIndex(new BufferAttribute(triangles, 1));
     this.mesh.material.polygonOffset = false;
     this.mesh.visible = triangles.length > 0;

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import ChainMap
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
@@ -86,8 +85,7 @@ class _Builder:
             for i, table in enumerate(given):
                 self._remember(table, f"/{group}/{i}")
         placed = {g: [self._place(g, i, t) for i, t in enumerate(tables[g])] for g in ("forces", "anchors")}
-        known = ChainMap(self.meshes, self.literal)
-        placed["forces"] = pulling(placed["forces"], self._led, self.drawing.factor, known, self.notes)
+        placed["forces"] = pulling(placed["forces"], self._led, self.drawing.factor, self._known_mesh, self.notes)
         carried = [entry for i, table in enumerate(tables["geometry"]) for entry in self._carry(i, table)]
         for group in placed:
             scene[group] = [table for table, _ in placed[group]]
@@ -319,6 +317,10 @@ class _Builder:
                 raise
             self.left[item] = error.sentence.removeprefix(item.label).lstrip(": ")
             return None
+
+    def _known_mesh(self, name: str) -> Any:
+        """A mesh of the scene."""
+        return self.meshes.get(name, self.literal.get(name))
 
     def _named(self, value: Any, shape: Shape, own: Split | None) -> str:
         """The name of a mesh in the scene; the same objects divided the same way are one mesh."""

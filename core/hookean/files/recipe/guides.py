@@ -20,10 +20,10 @@ GUIDE_FIELDS = ("target_divide", "nearest")
 Led = Callable[[dict[str, Any], str, str], Sequence[tuple[Item, ...]]]
 
 
-def pulling(placed: Placed, led: Led, factor: float, meshes: Mapping[str, Any], notes: list[str]) -> Placed:
+def pulling(placed: Placed, led: Led, factor: float, meshes: Callable[[str], Any], notes: list[str]) -> Placed:
     """Pulls to selected curves get polylines; the tables of further curves come last, for pointers count tables.
 
-    `led` finds the curves of a table, or makes its target a mesh; `meshes` has all of these by name."""
+    `led` finds the curves of a table, or makes its target a mesh; `meshes` gives each of these by its name."""
     first, more = [], []
     for number, (table, shape) in enumerate(placed):
         pointer, kind = f"/forces/{number}", table.get("kind")
@@ -36,7 +36,7 @@ def pulling(placed: Placed, led: Led, factor: float, meshes: Mapping[str, Any], 
     return _shared(first + more, meshes)
 
 
-def _shared(placed: Placed, meshes: Mapping[str, Any]) -> Placed:
+def _shared(placed: Placed, meshes: Callable[[str], Any]) -> Placed:
     """Pulls with `nearest` keep the points that no other one of them is nearer to."""
     numbers = []
     for number, (table, shape) in enumerate(placed):
@@ -59,13 +59,13 @@ def _shared(placed: Placed, meshes: Mapping[str, Any]) -> Placed:
     return found
 
 
-def _apart(points: Floats, table: Mapping[str, Any], meshes: Mapping[str, Any]) -> Floats:
+def _apart(points: Floats, table: Mapping[str, Any], meshes: Callable[[str], Any]) -> Floats:
     """Distances (n,) of points from the guide of a pull [length]: its forces where the strength is 1."""
     from hookean.system.system import compile
 
     pull = {name: table[name] for name in ("kind", "curve", "closed", "vertices", "faces") if name in table}
     if table.get("target") is not None:
-        mesh = meshes.get(table["target"])
+        mesh = meshes(table["target"])
         if mesh is None:
             return np.full(len(points), np.inf)  # the scene refuses a mesh that it does not have
         given = mesh if isinstance(mesh, Mapping) else {"vertices": mesh.array, "faces": mesh.faces}

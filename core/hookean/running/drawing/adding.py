@@ -19,7 +19,7 @@ def add(sheet: Sheet, edit: Add) -> None:
     number = _numbers(sheet, np.asarray(edit.points), edit.weld)
     for name, faces in edit.faces.items():
         pointer = f"/add/faces/{name}"
-        put_faces(sheet, name, _mapped(faces, number, pointer), pointer)
+        put_faces(sheet, name, _mapped(np.asarray(faces), number, pointer), pointer)
     for i, force in enumerate(edit.forces):
         pointer, particles = f"/add/forces/{i}", getattr(force, "particles", None)
         if particles is not None:
