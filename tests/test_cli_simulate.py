@@ -203,3 +203,26 @@ def test_ctrl_c_writes_what_was_seen(folder: Path):
     assert "stopped after 5 frames, 1 s." in said
     assert rows(table.read_text("utf-8"))[-1]["time [s]"] == "1"
     assert json.loads((folder / "out.json").read_text("utf-8"))["time"] == pytest.approx(1.0)
+
+
+full = pytest.mark.skipif(not os.path.exists("/dev/full"), reason="a disk that is always full")
+
+
+@full
+def test_a_table_on_a_full_disk_is_one_sentence(folder: Path):
+    """Exit code 2, not 1: no limit is exceeded; and no traceback."""
+    done = run("cable.json", "--frames", "2", "--csv", "/dev/full")
+    assert done.exit_code == 2 and "/dev/full: cannot be written (No space left on device)" in done.stderr
+
+
+@full
+@pytest.mark.slow
+def test_a_full_disk_behind_standard_output_is_one_sentence(folder: Path):
+    """As `hookean relax cable.json > file` on one."""
+    command = [sys.executable, "-m", "hookean.cli", "simulate", "cable.json", "--frames", "1"]
+    with open("/dev/full", "wb") as nowhere:
+        done = subprocess.run(command, stdout=nowhere, stderr=subprocess.PIPE, text=True, timeout=HANG, check=False)
+    assert done.returncode == 2
+    assert done.stderr.splitlines() == [
+        "hookean: standard output cannot be written (No space left on device); check free space"
+    ]

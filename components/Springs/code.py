@@ -10,8 +10,9 @@ Cables and bars: give the stiffness in one way, as k, as EA (k = EA / L0 of each
 material and a section (EA = E x area). With `tension_only` a spring is slack below its rest length,
 as a cable; with `compression_only` it has no force above it, as a strut. Give the prestress in one
 way, too: as the `force` that the spring has at its start length, the `strain` (l - L0) / L0 there,
-or the rest length. A temperature, of a material with thermal expansion, lengthens the rest length
-by 1 + expansion x temperature, on top of the prestress.
+or the rest length. A rest factor multiplies the rest length that follows: with the default, 1, the
+force is as given. A temperature, of a material with thermal expansion, lengthens the rest length by
+1 + expansion x temperature, on top of the prestress.
 
 E = k (l - L0)^2/2
 """

@@ -36,6 +36,12 @@ def check_target(target: StrPath, source: StrPath | None = None, *, folder: bool
         raise InputError(name, "is not a valid file path; check it for invalid characters.") from None
 
 
+def _check_kind(path: Path) -> None:
+    """InputError where a path is that of a device or a pipe; a file in its place would be it for all programs."""
+    if path.exists() and not path.is_file():
+        raise InputError(path.name, "is a device or a pipe, not a file; give the path of a file to write.")
+
+
 def put(target: StrPath, data: bytes, check: Callable[[bytes], object]) -> None:
     """Write `data` to a file beside `target`, `check` what is read back, then put it in target's place. A link is
     written through: it stays, and the file that it leads to is replaced.
@@ -46,6 +52,7 @@ def put(target: StrPath, data: bytes, check: Callable[[bytes], object]) -> None:
     path = Path(target)
     if path.is_symlink():
         path = Path(os.path.realpath(path))
+    _check_kind(path)
     beside = path.with_name(f".{_process(os.getpid())}-{secrets.token_hex(8)}.hookean")
     try:
         _sweep(path.parent)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+import os
 import sys
 from functools import cache
 from importlib.metadata import EntryPoint, entry_points
@@ -13,6 +15,8 @@ from typer.core import TyperGroup
 from hookean import __version__
 from hookean.commands.command import fail, new
 from hookean.errors import InputError
+
+FULL = (errno.ENOSPC, getattr(errno, "EDQUOT", errno.ENOSPC), errno.EFBIG, errno.EIO)
 
 
 class Commands(TyperGroup):
@@ -92,6 +96,12 @@ def main() -> None:
     except KeyboardInterrupt:
         typer.echo("hookean: stopped", err=True)
         sys.exit(130)
+    except OSError as error:
+        if error.errno not in FULL:
+            raise
+        sys.stdout = open(os.devnull, "w")  # noqa: SIM115  # what is left in the old one fails again at the end
+        typer.echo(f"hookean: standard output cannot be written ({error.strerror}); check free space", err=True)
+        sys.exit(2)
 
 
 if __name__ == "__main__":

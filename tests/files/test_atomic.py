@@ -73,3 +73,14 @@ def test_what_a_killed_process_left_is_deleted_with_the_next_write(tmp_path: Pat
     mine.touch(), other.touch()
     put(target, b"after", no_check)
     assert set(tmp_path.iterdir()) == {target, mine, other}
+
+
+def test_a_pipe_is_not_replaced_by_a_file(tmp_path: Path) -> None:
+    """Nor is a device: as root, a table written to /dev/full once was that file for all programs."""
+    pipe, link = tmp_path / "out.csv", tmp_path / "link.csv"
+    os.mkfifo(pipe)
+    link.symlink_to(pipe)
+    for path in (pipe, link):
+        with pytest.raises(InputError, match="is a device or a pipe, not a file"):
+            put(path, b"after", no_check)
+    assert pipe.is_fifo() and sorted(f.name for f in tmp_path.iterdir()) == ["link.csv", "out.csv"]

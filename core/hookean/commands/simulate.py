@@ -228,14 +228,21 @@ def _table(given: str | None, target: Path | None) -> Iterator[Callable[[list[An
             whole = open(target, "w", encoding="utf-8", newline="")  # noqa: SIM115
     except OSError as error:
         raise InputError(given, f"cannot be written ({error.strerror}); check the path") from None
-    with whole as file:
-        lines = csv.writer(file, lineterminator="\n")
+    full = "cannot be written ({}); check free space, and that what reads it still runs"
+    try:
+        with whole as file:
+            lines = csv.writer(file, lineterminator="\n")
 
-        def write(row: list[Any]) -> None:
-            lines.writerow(cells.row(row))
-            file.flush()
+            def write(row: list[Any]) -> None:
+                try:
+                    lines.writerow(cells.row(row))
+                    file.flush()
+                except OSError as error:
+                    raise error if target is None else InputError(given, full.format(error.strerror)) from None
 
-        yield write
+            yield write
+    except OSError as error:  # of what was left to write at the end
+        raise error if target is None else InputError(given, full.format(error.strerror)) from None
 
 
 def _conclude(options: Options, to: _Targets, read: Source, running: Simulation, seen: _Seen, code: int) -> None:
