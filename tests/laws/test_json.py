@@ -27,7 +27,7 @@ def shaken(kind: str, seed: int) -> Scene:
     for name in type(force).model_fields:
         value = getattr(force, name)
         if isinstance(value, np.ndarray) and value.dtype == np.float64:
-            changes[name] = value * (1.0 + 0.1 * rng.random(value.shape))
+            changes[name] = value * (1.0 - 0.1 * rng.random(value.shape))
     given = {name: getattr(force, name) for name in force.model_fields_set} | changes
     return scene_of(type(force)(**given), x + 0.01 * rng.normal(size=x.shape))
 

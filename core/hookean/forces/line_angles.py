@@ -215,7 +215,7 @@ def angle_block(index: Ints, strength: Any, low: Any, high: Any, multiple: Any =
 def within_half_a_turn(angle: float | Floats) -> float | Floats:
     """An angle that two lines can have [rad], from 0 to pi; else a fault of its field."""
     values = np.ravel(angle)
-    wrong = values[(values < 0.0) | (values > np.pi + 1e-9)]
+    wrong = values[(values < 0.0) | (values > np.pi + 1e-6)]  # that of single precision is allowed
     if len(wrong):
         raise fault(f"{wrong[0]:g} given; angles from 0 to pi allowed, in radians")
     return angle
