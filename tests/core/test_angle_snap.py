@@ -38,7 +38,7 @@ def snapped(start: float, multiple: float, load: float = 0.0) -> Any:
         (1.8, np.pi, np.pi),
         (2.9, np.pi / 3, np.pi),
         (3.0, 2.0, 2.0),  # 4 would be nearer, and no two lines have that angle
-        (1.0, 7.0, 0.0),
+        (1.0, 3.1, 0.0),
     ],
 )
 def test_each_start_turns_to_the_nearest_multiple(start: float, multiple: float, end: float) -> None:

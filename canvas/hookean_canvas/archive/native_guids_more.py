@@ -49,6 +49,7 @@ d0a1b843-873d-4d1d-965c-b5423b35f327 Connect Curves
 8248da39-0729-4e04-8395-267b3259bc2f Convex Edges
 9d0c5284-ea24-4f9f-a183-ef57fc48b5b8 Convex Hull
 5d192b90-1ae3-4439-bbde-b05976fc4ac3 Copy Trim
+047097d1-83bd-4f76-9994-dff721c24047 CreatePlankton
 9d50bf9b-46bc-403a-9ec9-1052f51dd6b6 Cull Vertices
 aaa665bd-fd6e-4ccb-8d2c-c5b33072125d Curvature
 7376fe41-74ec-497e-b367-1ffe5072608b Curvature Graph
@@ -66,6 +67,7 @@ b7c12ed1-b09a-4e15-996f-3fa9f3f16b1c Curve | Plane
 d8033e3f-8387-4ffc-ab99-929218e8c740 Data Input
 dcd23728-8e0e-4241-94b3-7cc3985031dd Data Output
 23862862-049a-40be-b558-2418aacbd916 Deconstruct Arc
+97c28a7c-5d5a-4b3d-a935-b8730e88749b DeconstructPlankton
 e5c33a79-53d5-4f2b-9a97-d3d45c780edc Deconstuct Rectangle
 190d042c-2270-4bc1-81c0-4f90c170c9c9 Delete Consecutive
 23d715f7-4bc6-4e69-b76d-7c04ca2ebf5f Delete Vertices
@@ -157,6 +159,8 @@ b075c065-efda-4c9f-9cc9-288362b1b4b9 Plane Closest Point
 80e3614a-25ae-43e7-bb0a-760e68ade864 Plane Region
 290cf9c4-0711-4704-851e-4c99e3343ac5 Plane | Plane
 f1ea5a4b-1a4f-4cf4-ad94-1ecfb9302b6e Plane | Plane | Plane
+c9377989-c89e-477d-8dd2-b35af0c3b25d PlanktonFromPoints
+a484c1c6-bb88-4507-b650-58aadebda4c1 PlanktonMesh
 cffdbaf3-8d33-4b38-9cad-c264af9fc3f4 Point Charge
 23603075-be64-4d86-9294-c3c125a12104 Point Cylindrical
 4dbd15c7-ebcb-4af6-b3bd-32e80502520c Point Deform

@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from scipy.spatial import cKDTree
 
 from hookean.errors import InputError
 from hookean.forces.base import Force, lengths
 from hookean.running.drawing.edits import Add
 from hookean.running.drawing.sheet import Cloth, Floats, Ints, Sheet, exist, many, remade
 from hookean.system.weld import element_columns, keepers
+from hookean.values import near
 
 
 def add(sheet: Sheet, edit: Add) -> None:
@@ -35,7 +35,7 @@ def _numbers(sheet: Sheet, points: Floats, weld: float) -> Ints:
         return np.concatenate([old, sheet.new(points)])
     there = np.full(len(points), -1)
     if sheet.count:
-        apart, nearest = cKDTree(sheet.now).query(points)
+        apart, nearest = near.tree(sheet.now).query(points)
         there[apart <= weld] = nearest[apart <= weld]
     left = np.flatnonzero(there < 0)
     first = left[keepers(points[left], weld)]
