@@ -123,7 +123,12 @@ def _lbfgsb(search: Search) -> Ended:
         if at_minimum(search):
             return taken, DesignStatus.CONVERGED, ""
         if not before - value > settings.tolerance * abs(value):
-            return taken, *((DesignStatus.STALLED, NO_STEP) if found.status == 2 else (DesignStatus.CONVERGED, ""))
+            polish(search)  # near shapes that hardly resist, its line searches lead too far
+            if at_minimum(search):
+                return taken, DesignStatus.CONVERGED, ""
+            if not value - search.best[1] > settings.tolerance * abs(value):
+                return taken, DesignStatus.STALLED, NO_STEP
+            value, start = search.best[1:]
         before = value
 
 

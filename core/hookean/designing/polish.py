@@ -32,6 +32,7 @@ NOTHING = 1e-14  # part of the first objective: what is left is rounding
 STEP = 1e-4  # of an unknown's size, of differences of second order: 1e-8, and rounding of slopes by 1e-5
 STRAIGHT = 1e-12  # part of the largest curvature: that of directions that have less
 DAMPINGS = (0.0, 1e-9, 1e-7, 1e-5, 1e-3, 0.1)  # parts of the largest curvature, added to all
+SHORT = (1e-3, 1e-4, 1e-5, 1e-6)  # of an unknown's size, of steps straight down: near a snap, where nothing else leads
 GAIN = 1e-12  # part of the objective: a step that gains less is the last
 
 
@@ -113,7 +114,7 @@ def _merit(search: Search, here: Here, y: Floats) -> float:
 
 
 def _newton(search: Search, here: Here) -> list[Floats]:
-    """Steps (u,), each more damped than the one before; none where there is no second derivative."""
+    """Steps (u,), each more damped than the one before, then straight down; none without second derivatives."""
     free, count = here.free, int(here.free.sum())
     by = constraint_slopes(search, here.found)[here.rows][:, free] if len(here.rows) else np.zeros((0, count))
     hessian = _hessian(search, here)
@@ -130,6 +131,11 @@ def _newton(search: Search, here: Here) -> list[Floats]:
         step[free] = back - across @ (turned @ ((turned.T @ slope) / np.where(bent > 0.0, bent, np.inf)))
         if np.isfinite(step).all():
             steps.append(step)
+    down, size = across @ (across.T @ here.slope[free]), float(np.linalg.norm(across.T @ here.slope[free]))
+    for length in SHORT if size > 0.0 else ():
+        step = np.zeros(len(free))
+        step[free] = back - down * (length / size)
+        steps.append(step)
     return steps
 
 

@@ -35,7 +35,7 @@ def _numbers(sheet: Sheet, points: Floats, weld: float) -> Ints:
         return np.concatenate([old, sheet.new(points)])
     there = np.full(len(points), -1)
     if sheet.count:
-        apart, nearest = near.tree(sheet.now).query(points)
+        apart, nearest = (two[:, 0] for two in near.tree(sheet.now).query(points, 2))
         there[apart <= weld] = nearest[apart <= weld]
     left = np.flatnonzero(there < 0)
     first = left[keepers(points[left], weld)]
