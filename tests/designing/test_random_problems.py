@@ -64,8 +64,8 @@ def test_the_last_digits_are_found(seed: int) -> None:
 
 @pytest.mark.soak
 def test_a_search_that_is_at_no_minimum_does_not_say_converged() -> None:
-    """Near a snap of a net, where a change of 1e-6 of the rest lengths moves it by 1e-4, line searches lead too far: the
-    end is lower than that of L-BFGS-B alone, 1.3528e8, and converged at a minimum only."""
+    """Near a snap of a net, where a change of 1e-6 of the rest lengths moves it by 1e-4, line searches lead too far:
+    the end is lower than that of L-BFGS-B alone, 1.3528e8, and converged at a minimum only."""
     case = case_of(132, "scaled")
     found = hookean.design(case.problem())
     assert found.objective < 1.352e8
