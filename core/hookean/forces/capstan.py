@@ -162,6 +162,15 @@ def strains(table: Any, count: Any) -> None:
 
 
 @device
+def tensed(x: Any, indices: Any, parameters: Any, memory: Any, first: Any, table: Any) -> Any:
+    """Write the lines of a cable into the table, with their strains; returns how many there are."""
+    count = laid_out(x, indices, parameters, memory, first, table)
+    prefixes(table, count)
+    strains(table, count)
+    return count
+
+
+@device
 def stiffen(x: Any, indices: Any, parameters: Any, table: Any, first: Any, end: Any, w: Any) -> None:
     """Add the bound of the stiffness of lines between two saddles that hold, in which T_i = a_i (sum of l - ...).
 
@@ -200,9 +209,7 @@ def rough_cable_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore
     for first in range(indices.shape[0]):
         if not begins(parameters, first):
             continue
-        count = laid_out(x, indices, parameters, memory, first, table)
-        prefixes(table, count)
-        strains(table, count)
+        count = tensed(x, indices, parameters, memory, first, table)
         axial, start = parameters[first, STIFFNESS] * parameters[first, REST], 0
         for i in range(count):
             e, strain, length = int(table[i, ROW]), table[i, STRAIN], table[i, LENGTH]
@@ -222,9 +229,7 @@ def rough_cable_note(x, indices, parameters, memory):  # type: ignore[no-untyped
     for first in range(indices.shape[0]):
         if not begins(parameters, first):
             continue
-        count = laid_out(x, indices, parameters, memory, first, table)
-        prefixes(table, count)
-        strains(table, count)
+        count = tensed(x, indices, parameters, memory, first, table)
         if table[count - 1, STRAIN] == 0.0:
             continue  # a slack cable stays as it lies
         for i in range(count):

@@ -30,9 +30,7 @@ from hookean.forces.capstan import (
     STRAIN,
     TABLE,
     WAY,
-    laid_out,
-    prefixes,
-    strains,
+    tensed,
 )
 from hookean.forces.groups import begins
 
@@ -43,9 +41,7 @@ def states(x, indices, parameters, memory, found):  # type: ignore[no-untyped-de
     for first in range(indices.shape[0]):
         if not begins(parameters, first):
             continue
-        count = laid_out(x, indices, parameters, memory, first, table)
-        prefixes(table, count)
-        strains(table, count)
+        count = tensed(x, indices, parameters, memory, first, table)
         for i in range(count):
             found[int(table[i, 0])] = table[i]
 
