@@ -31,6 +31,17 @@ def test_a_line_that_misses_its_node(gap: float) -> None:
     assert found(*BEAM, [[1, gap, 0], top], anchors=[*ENDS, top]) == [SAID.format(f"3 at (1, {gap}, 0)", gap)]
 
 
+def test_lines_of_given_particles_are_joined_by_a_particle() -> None:
+    """No tolerance welds particles that are given: 1 and 2 are 1e-9 ft apart, and stay two."""
+    scene = {
+        "particles": [[0, 0, 0], [1, 0, 0], [1 + 1e-9, 0, 0], [2, 0, 0]],
+        "forces": [{"kind": "springs", "name": "net", "particles": [[0, 1], [2, 3]]}],
+        "anchors": [{"particles": [0, 3]}],
+    }
+    (said,) = compile(Scene.read(scene)).report.warnings
+    assert said.endswith("Draw lines from node to node, or give both lines the same particle")
+
+
 def test_a_line_that_ends_between_two_nodes() -> None:
     """A T drawn without a node: the end lies on the line, at distance 0."""
     assert found(*BEAM, [[0.5, 0, 0], [0.5, 1, 0]], anchors=[*ENDS, [0.5, 1, 0]]) == [

@@ -86,8 +86,10 @@ def _sentence(force: Force, loose: NDArray[np.bool_]) -> str:
     found, first = np.unique(near.particles[order], return_index=True)
     particle, away = int(found[0]), float(near.distance[order][first[0]])
     name = force.part.force.name or f"/forces/{force.part.number}"
+    numbered = getattr(force.part.force, "particles", None) is not None  # particles that are given are never welded
+    join = "give both lines the same particle" if numbered else "raise weld_tolerance"
     return (
         f"{name}: {'' if near.all else 'at least '}{len(found)} of {len(rows)} loose ends lie on other lines of this "
         f"force, within a tenth of their length, but are not joined to them; the first is "
-        f"{spot(force, particle, away)}. Draw lines from node to node, or raise weld_tolerance"
+        f"{spot(force, particle, away)}. Draw lines from node to node, or {join}"
     )
