@@ -162,6 +162,9 @@ def _nowhere(system: System, number: int) -> str:
 def _elsewhere(system: System) -> list[str]:
     """Anchors that hold a particle where they, or earlier ones, do not: the last target counts."""
     warnings: list[str] = []
+    held = np.concatenate([np.zeros(0, np.int64), *(anchor.particles for anchor in system.held)])
+    if not len(held) or np.bincount(held).max() == 1:
+        return warnings
     target, holder = np.full((len(system.x), 3), np.nan), np.full((len(system.x), 3), -1)
     for anchor in system.held:
         cells = np.ix_(anchor.particles, np.flatnonzero(anchor.free == 0.0))
