@@ -1,4 +1,4 @@
-"""python benchmarks/run.py [--only NAME ...] [--sizes N ...] [--out FILE]: see bench.py for what is measured, and how."""
+"""python benchmarks/run.py [--only NAME ...] [--sizes N ...] [--out FILE]: bench.py has what is measured, and how."""
 
 from __future__ import annotations
 
