@@ -80,10 +80,21 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Leave what takes long to `make soak`; share the others out with `order`."""
     left = [] if SOAK else [item for item in items if item.get_closest_marker("soak")]
+    left += [] if SOAK else more_of_the_slow(items)
     if left:
         config.hook.pytest_deselected(items=left)
-        items[:] = [item for item in items if not item.get_closest_marker("soak")]
+        gone = {id(item) for item in left}
+        items[:] = [item for item in items if id(item) not in gone]
     order(items)
+
+
+def more_of_the_slow(items: list[pytest.Item]) -> list[pytest.Item]:
+    """Of the cases of each slow test all but the first of every three."""
+    cases: dict[str, list[pytest.Item]] = {}
+    for item in items:
+        if item.get_closest_marker("slow") and not item.get_closest_marker("soak"):
+            cases.setdefault(item.nodeid.partition("[")[0], []).append(item)
+    return [item for same in cases.values() for place, item in enumerate(same) if place % 3]
 
 
 def pytest_collection_finish() -> None:

@@ -140,6 +140,7 @@ def disturbed(scene: Scene) -> tuple[np.ndarray, ...]:
     return place, system.mass, state.free, system.evaluate(state, still=False)[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("recipe", sampled(RECIPES, 3))
 def test_model_and_recipe_are_the_scene_that_scene_py_makes(recipe: str) -> None:
     """The same particles, supports and forces while they move, and settings that solve alike.

@@ -78,6 +78,7 @@ def test_building_again_gives_the_same_bytes(dist, tmp_path):
         assert (tmp_path / name).read_bytes() == (dist / name).read_bytes(), name
 
 
+@pytest.mark.soak
 def test_each_rhino_gets_the_components_it_can_run(dist):
     """Rhino 8 and 9 all of them; Rhino 7 those that ask for no packages."""
     found = {f: {p.stem.removeprefix("Hookean_") for p in (dist / f).iterdir()} for f in ("rhino8", "rhino7")}

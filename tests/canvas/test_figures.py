@@ -83,6 +83,7 @@ def test_a_shipped_definition_has_no_faults_and_stands_as_a_person_lays_it_out(f
     assert all(group.title for group in found.groups)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("figure", RUN)
 def test_the_canvas_gives_the_numbers_of_the_figure(figure: str, home: Home, tmp_path: Path) -> None:
     folder = tmp_path / figure

@@ -62,6 +62,7 @@ def test_the_generator_writes_the_same_bytes_from_nothing(generate, monkeypatch,
     assert len(found[0]) == 3 * len(KINDS)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "spoil",
     [

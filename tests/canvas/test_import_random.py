@@ -38,11 +38,13 @@ def translated_whole(seed: int, kind: type[Drawn] = Drawn) -> None:
     assert [one for one in lint.faults(after) if kind is Drawn or known not in one] == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(6))
 def test_a_definition_drawn_at_random_is_translated_whole(seed: int) -> None:
     translated_whole(seed)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_a_varied_definition_is_translated_whole_and_nothing_of_it_is_unknown(seed: int) -> None:
     """With clusters, groups, recorders, older versions of components, and disabled objects of a plug-in."""

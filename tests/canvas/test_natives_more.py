@@ -179,6 +179,7 @@ def test_fillets_shorten_a_square_by_what_arcs_save() -> None:
     assert size(sharp) == pytest.approx(16.0)  # no room for it
 
 
+@pytest.mark.soak
 def test_a_rebuilt_line_is_the_line_and_a_rebuilt_circle_stays_near() -> None:
     rebuilt = BY_NAME["Rebuild Curve"].run(made([(0, 0, 0), (4, 0, 0)]), 3, 6, False)[0]
     assert len(rebuilt.Points) == 6 and rebuilt.Degree == 3

@@ -103,6 +103,7 @@ def test_surfaces_of_a_file_are_meshed_as_the_core_meshes_them(version: str, hom
     assert plain(drawn["surfaces"])[0]["degree_u"] > 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("version", PYTHONS)
 def test_components_give_the_numbers_of_the_core(version: str, home: Home, tmp_path: Path) -> None:
     expected = wanted()

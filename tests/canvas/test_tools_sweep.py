@@ -166,6 +166,7 @@ def test_what_does_not_fit_is_one_sentence(home: Home, changed: dict[str, Any], 
     assert sentences(placed.ghenv) == [sentence]
 
 
+@pytest.mark.soak
 def test_a_server_that_is_killed_is_told_of_and_the_sweep_goes_on(tmp_path: Any, monkeypatch: Any) -> None:
     """One sentence while it is away; once it is back, the job that was kept goes on."""
     home = Home(tmp_path / "state")

@@ -240,6 +240,7 @@ def test_eight_that_race_get_one_server(home: Home, times: int) -> None:
         assert not home.told and home.serving() == []
 
 
+@pytest.mark.soak
 def test_threads_that_race_get_one_server(home: Home, tmp_path: Path) -> None:
     """What is open here is not kept open there."""
     found: list[str] = []

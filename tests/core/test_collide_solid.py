@@ -149,7 +149,7 @@ def test_a_weight_sinks_in_by_its_part_of_the_stiffness(solver: str, inside: boo
     assert found.force("collide_solid")["depth"] == pytest.approx([weight / k], rel=1e-8)
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_a_cloth_on_a_ball_is_carried_by_it_and_by_its_rim() -> None:
     """Contacts and reactions carry the weight W, to the residual; nothing is deeper in the ball than W / k."""
     count, k, weight = 13, 2000.0, 0.5

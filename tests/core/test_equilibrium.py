@@ -333,6 +333,7 @@ def test_position_errors_are_those_of_one_exact_step(n: int, factor: float, solv
     assert exact / 3.0 - rounding <= found.position_error <= 3.0 * exact + rounding
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(24))
 def test_position_errors_of_strips_and_nets_of_soft_and_stiff_springs(seed: int) -> None:
     """Long strips and nets whose stiffness differs by up to a thousand: the softest motions are slow to be found."""

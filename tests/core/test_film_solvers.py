@@ -161,7 +161,7 @@ def test_bubbles_on_a_disc_are_caps_of_spheres(name: str) -> None:
         assert slopes(errors) == pytest.approx([2, 2], abs=0.25)
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 @pytest.mark.parametrize("name", ["auto", "relaxation"])
 def test_a_bubble_that_bursts_is_reported(name: str) -> None:
     """Beyond p = 2 T / a no cap over a rim of radius a bears the pressure; what is returned is no larger than a few."""
@@ -244,7 +244,7 @@ def test_forces_added_to_a_running_film_count() -> None:
     assert running.system.films is not None and running.system.films.kind[middle] == WITHIN
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_a_film_in_a_net_is_stiff_as_a_whole() -> None:
     """Where springs hold every vertex nothing is left out, and a film adds its tension to theirs: one shape for all."""
     x, faces, rim = square(8, lambda u, v: 0.3 * u * v, "quads")

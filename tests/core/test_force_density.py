@@ -211,7 +211,7 @@ def test_coarser_nets_are_projections(seed: int, contrast: float) -> None:
     assert (held >= (found[1].held > 0)).all() and found[1].held.any() == net.held.any()
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_hubs_do_not_cost_their_square() -> None:
     """A particle joined to 30,000 others that are joined at random: a front would hold them all."""
     rng = np.random.default_rng(5)
@@ -229,7 +229,7 @@ def test_hubs_do_not_cost_their_square() -> None:
     assert result.converged and result.iterations == 1
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_bits_do_not_depend_on_threads() -> None:
     """A net too wide for a front, in processes of one and of two threads: the same bytes."""
     script = (

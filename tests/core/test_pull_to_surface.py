@@ -101,7 +101,7 @@ def test_on_poles_seams_and_axes_distances_are_right() -> None:
     assert distance == pytest.approx(np.abs(np.linalg.norm(along, axis=1) - 2.0), abs=1e-13)
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 @SEEDED
 @given(seed=st.integers(0, 2**32 - 1))
 def test_of_any_surface_the_distance_is_that_of_a_minimiser(seed: int) -> None:

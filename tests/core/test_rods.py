@@ -100,7 +100,7 @@ def pushed(n: int, force: float, **bend: Any) -> Any:
     return result
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_a_shallow_arch_that_is_pushed_through_bends_against_its_curvature() -> None:
     """Rise 0.05, F = 20: snapped through it hangs 0.071 below its pins, and the moment at its crown is 1.87 (1.85 with
     25 bars). Order 2: slopes 2 +- 0.15, 25 / 80^2 = 4e-3 at 80 bars. Sections that spin turn their curvature over
@@ -202,7 +202,7 @@ def kirchhoff_tip(force: np.ndarray) -> np.ndarray:
     return shot(moment, force)[:3] - [1.0, 1.0, 0.0]
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_a_bow_in_large_deflection_is_kirchhoffs_rod_without_twist() -> None:
     """A force of 1.5 EI / R^2 askew at the tip, which moves by 0.8 R: order 2, and 1e-3 R at 40 bars."""
     force = np.array([0.4, -0.5, 1.35])
@@ -213,6 +213,7 @@ def test_a_bow_in_large_deflection_is_kirchhoffs_rod_without_twist() -> None:
     assert errors[-1] <= 1e-3
 
 
+@pytest.mark.soak
 def test_a_drawn_coil_stays_where_it_is_and_comes_back() -> None:
     """No force as drawn, and none to move it; shaken by a fifth of its bars, free or on a clamp, the same shape again.
 

@@ -262,7 +262,7 @@ def test_a_given_size_is_the_size(size: tuple[int, int], tmp_path: Path) -> None
     assert (pixels < 0.97).any(axis=2).mean() > 0.01
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_equal_input_gives_equal_bytes_and_small_files(tmp_path: Path) -> None:
     scene = film(20)
     result = relax(scene)

@@ -122,10 +122,10 @@ def random_motion(seed: int) -> Spec:
 
 @pytest.mark.slow
 def test_every_step_that_is_named_holds_in_the_same_motion():
-    """Eight random motions, in soak forty, whose step is often too long: each step that a diverged run names, taken
+    """Four random motions, in soak forty, whose step is often too long: each step that a diverged run names, taken
     from the start for the time that the message has, does not diverge."""
     named = 0
-    runs = 40 if SOAK else 8
+    runs = 40 if SOAK else 4
     for seed in range(runs):
         spec = random_motion(seed)
         simulation = Simulation(Scene.read(spec))
@@ -236,7 +236,7 @@ def test_a_particle_that_nothing_holds_is_named_and_no_step_is_blamed(settings: 
     assert "Nothing supports particle 3" in simulation.message and "time_step" not in simulation.message
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_a_shell_that_collapses_does_not_diverge_by_default():
     """A plate on its corners under springs of 0.3 of their length, so strong that its triangles become needles: their
     forces have no bound. What springs and motion have stays within three times the energy of the start (it grew ten

@@ -165,7 +165,7 @@ def omega(spec: dict[str, Any], x: np.ndarray) -> float:
     return float(np.sqrt(np.linalg.eigvalsh(tangent)[-1]))
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 @pytest.mark.parametrize("held", ["rim", "corners"])
 def test_the_bound_of_all_shapes_is_below_the_limit_of_each(held: str):
     """2 / omega of crumpled and stretched shapes of a net never falls below the bound, and comes near it."""

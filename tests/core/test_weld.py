@@ -317,7 +317,7 @@ def test_points_join_the_first_given_particle_however_many_are_near(
     assert found.tolist() == np.array(kept).tolist() and index.tolist() == which
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_a_crowd_of_given_particles_is_welded_to_in_a_moment() -> None:
     """40,000 points all within the tolerance of 40,000 particles: 1.6e9 pairs, which are not looked at one by one."""
     crowd = np.random.default_rng(3).uniform(-1e-4, 1e-4, (40_000, 3))
@@ -327,7 +327,7 @@ def test_a_crowd_of_given_particles_is_welded_to_in_a_moment() -> None:
     assert (compile(Scene(**scene)).groups[0].block.indices == 0).all()
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_many_forces_that_lie_on_each_other_are_reported_with_their_first_pairs() -> None:
     """400 lines 1e-5 apart, 79,800 pairs of forces: ten sentences, and how many more."""
     at = np.linspace(0.0, 1.0, 10)

@@ -118,6 +118,7 @@ def said_of(scene: dict[str, Any]) -> list[str]:
     return sensitivity(scene, goals=goals, variables=[{"anchor": "rim", "axes": "z", "tie": "all"}]).warnings
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("height", [0.0, 0.5])
 @pytest.mark.parametrize("far", [0.0, 3000.0])
 def test_a_smooth_film_has_no_kink(height: float, far: float) -> None:

@@ -69,6 +69,7 @@ def test_heights_of_a_large_net_are_recovered() -> None:
     assert np.abs(own - wanted).max() <= 1e-7 * np.abs(wanted).max()
 
 
+@pytest.mark.soak
 def test_bounds_hold_and_the_end_is_a_minimum() -> None:
     """Densities of at most 1.2 cannot hold the net as those of up to 2 did. At the end no slope leads further: those of
     the unknowns between their bounds vanish against |J| |r| (the search ends at relative changes of 1e-8, the square

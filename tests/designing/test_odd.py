@@ -36,6 +36,7 @@ def test_an_objective_without_end_is_reported() -> None:
     assert np.isfinite(found.result.particles).all() and np.isfinite(found.objective)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("constrained", [False, True])
 @pytest.mark.parametrize(
     ("variable", "name"),

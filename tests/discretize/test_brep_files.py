@@ -117,7 +117,7 @@ def test_the_six_faces_of_the_twisted_box(rhino_objects: Any) -> None:
     assert len(mesh_faces(brep, 4, 4).faces) == 96
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_the_22_cached_meshes_of_the_logo(rhino_objects: Any) -> None:
     seen = 0
     for (_, brep), chi in zip(breps(rhino_objects("v7_rhino_logo_nurbs.3dm")), (0, 2, 2, 0, 0, 2), strict=True):

@@ -89,7 +89,7 @@ def test_folds_are_kept() -> None:
     assert hd.volume(soft) < 8.0 - 1e-3
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_a_sphere_stays_a_sphere() -> None:
     """Vertices are on the given facets. Equal triangles of side a with corners on the sphere: the mean depth is
     a^2 / 8 R, so the volume is less by 3 a^2 / 8 R^2 of it, and the area 3 V / h, with the height h = R - a^2 / 6 R of
@@ -115,7 +115,7 @@ def test_the_rims_of_a_cylinder_stay_circles() -> None:
     assert lengths(made, rim).sum() > 2 * np.pi * chord
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 @settings(derandomize=True, deadline=None, max_examples=8 if SOAK else 2)
 @given(st.integers(0, 999), st.floats(0.3, 3.0))
 def test_the_same_mesh_gives_the_same_triangles(seed: int, size: float) -> None:

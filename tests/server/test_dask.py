@@ -126,6 +126,7 @@ def test_a_killed_worker_loses_nothing(dask: Dask, jobs: httpx.Client) -> None:
     assert [found[n] for n in some] == rows_of(request, some)
 
 
+@pytest.mark.soak
 def test_an_item_that_does_not_fit_fails_alone(jobs: httpx.Client) -> None:
     address = post(jobs, {"scene": NET, "sweep": {"forces": {"net": {"stiffness": [1000, -1, 2000]}}}})
     assert ended(jobs, address)["failed"] == 1

@@ -126,6 +126,7 @@ def server() -> Iterator[Served]:
     found.end()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("solver", SETTINGS)
 def test_the_same_start_and_edits_end_at_the_same_iteration(server: Served, solver: str) -> None:
     first = ended(server, "first", solver, left_alone, fast=True)

@@ -6,6 +6,7 @@ import httpx
 import pytest
 
 from serving import CABLE
+from soak import sampled
 
 from . import malformed
 from .conftest import problem
@@ -22,7 +23,7 @@ def test_the_scene_they_are_made_from_is_good(client: httpx.Client) -> None:
     assert client.post("/v1/relax", json=malformed.GOOD).status_code == 200
 
 
-@pytest.mark.parametrize("name", CASES, ids=range(len(CASES)))
+@pytest.mark.parametrize("name", sampled(CASES, 3))
 def test_malformed(client: httpx.Client, name: str) -> None:
     body, pointer = CASES[name]
     response = client.post("/v1/relax", content=body, headers={"content-type": "application/json"})

@@ -13,6 +13,7 @@ from fastapi.openapi.models import OpenAPI
 from hookean.forces import KINDS
 from hookean_server.problems import CATALOGUE
 from serving import CABLE, app
+from soak import sampled
 
 DOCUMENT: dict[str, Any] = json.loads(json.dumps(app().openapi()))
 OPERATIONS = [(path, method, o) for path, item in DOCUMENT["paths"].items() for method, o in item.items()]
@@ -115,7 +116,7 @@ def test_forces_are_told_by_their_kind() -> None:
     assert set(forces["discriminator"]["mapping"]) == set(KINDS)
 
 
-@pytest.mark.parametrize(("path", "name", "example"), EXAMPLES)
+@pytest.mark.parametrize(("path", "name", "example"), sampled(EXAMPLES, 3))
 def test_examples_run_and_fit(client: httpx.Client, path: str, name: str, example: Any) -> None:
     if path.startswith("/v1/sessions"):
         pytest.skip("of what is kept: tested with sessions")

@@ -216,6 +216,7 @@ def edited(count: int, chance: np.random.Generator) -> tuple[bytes, Simulation, 
     return base, simulation, found.edits, found.revisions
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", sampled(range(12), 4))
 def test_old_edits_become_base_and_all_that_can_be_taken_back_stays(seed: int) -> None:
     """The history of 450 random edits is the same from the folded base: its length both ways, and each setup."""

@@ -114,7 +114,7 @@ def test_a_sag_is_asked_for_by_slider_and_its_values_are_used(cable: Studio):
     cable.until(lambda: service.scene(key)["forces"] == scene["forces"])
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_conflicts_bounds_and_constraints_are_reported_in_words(cable: Studio):
     """Two sags of one particle conflict; a limit of the force that no rest factor in the bounds keeps is not met."""
     page, service, key = cable.page, cable.service, cable.key

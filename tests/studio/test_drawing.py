@@ -156,6 +156,7 @@ def lines(studio: Studio) -> int:
     return len(forces[0]["particles"]) if forces else 0
 
 
+@pytest.mark.soak
 def test_an_obj_file_gets_roles_and_its_recipe_is_kept(open_studio: Opened, tmp_path: Path) -> None:
     """Roles by the groups of the file, an anchor that snaps to the end of the tie with its distance, on a phone; the
     scene is that of `hookean relax --recipe` with the recipe that is saved with the model."""
@@ -195,6 +196,7 @@ def test_an_obj_file_gets_roles_and_its_recipe_is_kept(open_studio: Opened, tmp_
     assert page.get_by_label("Recipe of the file").input_value() == recipe
 
 
+@pytest.mark.soak
 def test_a_phone_draws_by_taps(open_studio: Opened) -> None:
     """A tap is a corner, a drag turns the view; the panel has names for all and fits its 390 pixels."""
     studio = open_studio(PHONE)

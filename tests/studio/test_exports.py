@@ -123,6 +123,7 @@ def test_the_table_has_every_force_and_reaction_with_its_unit(membrane: Studio):
     assert "[N]" in str(rows) or '"N"' in str(rows) or "'N'" in str(rows)
 
 
+@pytest.mark.soak
 def test_the_simulation_goes_on_in_python(membrane: Studio):
     """The npz is what Simulation.load reads."""
     simulation = Simulation.load(taken(membrane, "npz", ".npz"))
@@ -187,6 +188,7 @@ def test_what_is_saved_reopens_as_the_same_model(membrane: Studio):
     assert open_scene(named).canonical == Scene.read(before).canonical
 
 
+@pytest.mark.soak
 def test_no_export_doubles_faces(membrane: Studio):
     """A membrane of 20 x 20 faces has 400 of them in every file, read by the library whose format it is."""
     items = rhino3dm.File3dm.Read(str(taken(membrane, "Rhino .3dm", ".3dm"))).Objects

@@ -107,6 +107,7 @@ def test_pause_step_undo_redo_and_reset(cable: Studio):
     cable.rests_at(service.particles(key))
 
 
+@pytest.mark.soak
 def test_a_pause_holds_though_an_edit_overtakes_its_answer(cable: Studio):
     """What is still on its way of a drag, or is typed quickly, does not set going what a hand has just stopped."""
     key, service, page = cable.key, cable.service, cable.page

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from hookean.discretize import grid
 
@@ -37,6 +38,7 @@ def test_the_rim_of_a_carried_mesh_is_held_and_selected(tab: Studio):
     tab.page.get_by_text(f"{len(EDGE)} particles selected").wait_for()
 
 
+@pytest.mark.soak
 def test_a_closed_form_is_held_where_it_stands(tab: Studio):
     """A cube has neither rim nor ends: its four lowest corners are offered."""
     corners = [[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)]

@@ -60,6 +60,7 @@ def test_a_drag_reads_no_scene_and_is_told_what_has_changed(drags: tuple[Studio,
     assert studio.particles()[0].tolist() == pytest.approx(target, rel=1e-6)
 
 
+@pytest.mark.soak
 def test_an_edit_of_a_force_has_the_scene_read_again(drags: tuple[Studio, list[str], list[int]]) -> None:
     """Once, as it changes more than the anchors; the topology stays."""
     studio, read, _ = drags

@@ -92,6 +92,7 @@ def test_a_notice_covers_nothing_in_a_session_and_closes_with_esc(open_studio: O
     picked.wait_for(state="hidden")
 
 
+@pytest.mark.soak
 def test_a_load_on_a_scene_of_a_mesh_is_added_undone_and_removed(open_studio: Opened) -> None:
     studio = session(open_studio, MESH, "mesh-load")
     page, service = studio.page, studio.service
@@ -143,6 +144,7 @@ def test_what_was_saved_opens_as_the_same_model(open_studio: Opened, form: tuple
     assert service.scene(studio.key) == scene
 
 
+@pytest.mark.soak
 def test_a_file_that_is_not_the_model_comes_with_a_sentence(open_studio: Opened) -> None:
     studio = session(open_studio, MESH, "lacks")
     for button, ending, lacks in (("OBJ", ".obj", "not forces, loads"), ("CSV", ".csv", "cannot be opened")):

@@ -176,6 +176,7 @@ WATCH = """(slider) => {
 """Notes every value that a slider shows."""
 
 
+@pytest.mark.soak
 def test_a_scene_that_arrives_late_does_not_take_a_slider_back(cable: Studio):
     """The page reads a scene of after the first stroke, which arrives after the second: the slider shows the second."""
     page, service, key = cable.page, cable.service, cable.key

@@ -96,6 +96,7 @@ def test_scales_are_chosen_and_their_colours_told_apart_by_any_eyes(open_studio:
         assert apart[np.triu_indices(len(seen), 1)].min() > 10
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("theme", sampled(["dark", "light"], 2))
 def test_a_picked_spring_has_a_dark_and_a_light_line_on_every_colour(open_studio: Any, theme: str) -> None:
     """Across its middle the lightest and darkest pixel have a contrast of 7 at least (WCAG 2.2, 1.4.11 asks for 3)."""

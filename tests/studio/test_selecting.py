@@ -158,6 +158,7 @@ def stiffness(studio: Studio) -> Any:
     return studio.service.scene(studio.key)["forces"][0]["stiffness"]
 
 
+@pytest.mark.soak
 def test_springs_between_the_selected_get_a_force(sheet: Studio) -> None:
     """Their own stiffness and a constant tension on what is selected: the 4 + 3 springs among 2 x 3 particles; the
     others keep theirs, and Undo takes it back."""

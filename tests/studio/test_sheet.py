@@ -17,6 +17,7 @@ from hookean.files.recipe.draft import draft
 from hookean.files.rhino import threedm
 from hookean.files.rhino.threedm import Additions, NewObject
 from hookean.values.mesh import Mesh
+from soak import sampled
 
 from . import tasks
 from .browser import LAPTOP, PHONE, Studio
@@ -116,6 +117,7 @@ def test_a_skin_is_drawn_tight_between_feet_and_fingers(studio: Studio) -> None:
     assert np.allclose(state["forces"][0]["force"], found.forces[0]["force"], rtol=1e-3, atol=1e-3 * 100)
 
 
+@pytest.mark.soak
 def test_choices_are_undone_by_button_and_by_key(studio: Studio, roof: Path) -> None:
     page = studio.page
     tasks.chosen(studio, roof)
@@ -180,6 +182,7 @@ def tab_to(studio: Studio, name: str) -> None:
     raise AssertionError(f"Tab does not reach {name}")
 
 
+@pytest.mark.soak
 def test_what_is_no_model_is_explained(studio: Studio, roof: Path) -> None:
     """Without springs the button is off; a value that is not allowed is refused in the field, and a fault by layer."""
     page = studio.page
@@ -216,7 +219,7 @@ def test_the_recipe_is_edited_and_saved(studio: Studio, roof: Path, tmp_path: Pa
     assert studio.service.scene(studio.key)["forces"][0]["stiffness"] == 750
 
 
-@pytest.mark.parametrize("size", [LAPTOP, PHONE], ids=["laptop", "phone"])
+@pytest.mark.parametrize("size", sampled([PHONE, LAPTOP], 2))
 def test_it_is_readable(open_studio: Opened, roof: Path, size: dict[str, int]) -> None:
     """It fits the window, and axe finds nothing serious."""
     studio = open_studio(size)

@@ -72,6 +72,7 @@ def test_values_colour_the_springs_with_a_legend(tab: Studio, shown: hookean.Vie
     legend.get_by_text("Force: all equal").wait_for()  # the cable is straight as yet
 
 
+@pytest.mark.soak
 def test_a_notebook_has_the_page_in_a_cell(open_studio: Opened, shown: hookean.View, tmp_path: Path):
     """A page of another port, in a browser that was never logged in, draws the cable in its frame."""
     tab = open_studio(alone=True)

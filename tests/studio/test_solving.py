@@ -6,12 +6,14 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pytest
 
 from hookean import family
 
 from .browser import Studio, net
 
 
+@pytest.mark.soak
 def test_a_solver_on_its_way_shows_residual_and_target_and_keeps_its_shape(tab: Studio) -> None:
     """A net that swings for ever: the status tells the residual and its target until Pause, which keeps the shape."""
     scene = net(6)

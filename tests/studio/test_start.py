@@ -109,6 +109,7 @@ def test_every_figure_is_in_the_gallery_with_its_picture(studio: Studio):
         page.wait_for_function("image => image.complete && image.naturalWidth > 0", arg=picture)
 
 
+@pytest.mark.soak
 def test_a_session_that_another_program_made_is_listed_shown_and_renamed(studio: Studio):
     """Grasshopper makes sessions by PUT, under keys of its own. The list of sessions has the name that it is given."""
     key = "roof.gh:4f8c-11"
@@ -148,6 +149,7 @@ def test_a_rhino_file_is_dropped_and_becomes_a_session(studio: Studio):
     studio.rests_at(drawn, 1e-3 * np.ptp(drawn))
 
 
+@pytest.mark.soak
 def test_a_model_of_a_figure_is_dropped_and_becomes_a_session(studio: Studio):
     drop(studio, "model.3dm", (ROOT / "gh_examples" / "9.4-cable" / "model.3dm").read_bytes())
     studio.press("Make the model")
@@ -185,6 +187,7 @@ def test_a_file_that_is_none_is_refused_in_a_sentence(studio: Studio, content: b
     assert "#s=" not in studio.page.url
 
 
+@pytest.mark.soak
 def test_what_the_store_lost_is_named(open_studio: Opened, tmp_path: Path):
     """The database is deleted while the service is down: the start page names the session and where the copy is."""
     service = Service(tmp_path)

@@ -102,6 +102,7 @@ def test_a_drag_is_told_at_the_hand(cable: Studio):
     told.wait_for(state="detached")
 
 
+@pytest.mark.soak
 def test_springs_without_a_rest_length_have_no_strain(tab: Studio):
     """(l - L0) / L0 is undefined for L0 = 0: the table of a force-density net has no such column."""
     net = {"kind": "springs", "particles": [[0, 1], [1, 2]], "stiffness": 10, "rest_factor": 0}

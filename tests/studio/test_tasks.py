@@ -111,6 +111,7 @@ def test_a_tensegrity_finds_its_twist(studio: Studio):
     assert sum(force < 0 for force in shown) == 4
 
 
+@pytest.mark.soak
 @pytest.mark.skipif(not WIGGLE.is_file(), reason="the files of Rhino are not here")
 def test_a_rhino_file_is_imported_with_roles(studio: Studio, tmp_path: Path):
     """The cable is that of the Python API, made without a recipe: 24 equal arcs of the curve, in the inches of the
@@ -190,6 +191,7 @@ def measures(result: Result) -> dict[str, float | str]:
     }
 
 
+@pytest.mark.soak
 def test_two_variants_are_compared(studio: Studio):
     """The table of differences has the numbers of the Python API for a saddle 4 m high, for its variant of 2 m, and
     what the second has more, to the four digits shown; sums that cancel are nothing beside the largest reaction. The

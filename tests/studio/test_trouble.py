@@ -81,6 +81,7 @@ def test_a_link_to_no_session_says_so(tab: Studio):
     tab.page.get_by_text("Not found", exact=True).wait_for()
 
 
+@pytest.mark.soak
 def test_two_people_edit_one_session(open_studio: Opened):
     """Each sees what the other did; at the end both show the same, and that is what the service has."""
     one, other = open_studio(), open_studio(alone=True)
@@ -105,6 +106,7 @@ def test_two_people_edit_one_session(open_studio: Opened):
     other.rests_at(rest)
 
 
+@pytest.mark.soak
 def test_grasshopper_gives_the_session_another_scene(tab: Studio):
     """A scene with other particles under the same key: the page shows it, and nothing of the one before."""
     tab.service.put("redrawn", CABLE)
@@ -118,6 +120,7 @@ def test_grasshopper_gives_the_session_another_scene(tab: Studio):
     tab.rests_at(equilibrium(longer))
 
 
+@pytest.mark.soak
 def test_what_is_done_before_the_service_greets_again_is_done(tab: Studio):
     """An anchor is dragged when the connection is there again, and the service's greeting still on its way: the edit
     counts, and the form goes on to its equilibrium."""
