@@ -34,6 +34,7 @@ BETTER = {
     r"\bhangs? on nothing\b": "is unsupported",
 }
 """Pattern (any case), and what to write instead."""
+ANY = re.compile("|".join(f"(?:{pattern})" for pattern in BETTER), re.IGNORECASE)
 
 ALLOWED = {
     "core/hookean/files/recipe/recipe.py": ("hangs on nothing",),
@@ -54,17 +55,18 @@ def texts(path: Path) -> Iterator[tuple[int, str]]:
 
 def python_texts(tree: ast.AST) -> Iterator[tuple[int, str]]:
     """String literals and docstrings; an f-string as one text, {} in place of its values."""
-    if isinstance(tree, ast.JoinedStr):
-        parts = [str(part.value) if isinstance(part, ast.Constant) else "{}" for part in tree.values]
-        yield tree.lineno, "".join(parts)
-        for part in tree.values:
-            if isinstance(part, ast.FormattedValue):
-                yield from python_texts(part.value)
-        return
-    if isinstance(tree, ast.Constant) and isinstance(tree.value, str):
-        yield tree.lineno, tree.value
-    for child in ast.iter_child_nodes(tree):
-        yield from python_texts(child)
+    waiting = [tree]
+    while waiting:
+        node = waiting.pop()
+        if isinstance(node, ast.JoinedStr):
+            parts = [str(part.value) if isinstance(part, ast.Constant) else "{}" for part in node.values]
+            yield node.lineno, "".join(parts)
+            waiting += [part.value for part in node.values if isinstance(part, ast.FormattedValue)]
+        elif isinstance(node, ast.Constant):
+            if isinstance(node.value, str):
+                yield node.lineno, node.value
+        else:
+            waiting += ast.iter_child_nodes(node)
 
 
 def json_texts(value: object) -> Iterator[str]:
@@ -82,7 +84,7 @@ def faults(path: Path) -> list[str]:
     found = []
     for line, text in texts(path):
         flat = " ".join(text.split())
-        for pattern, better in BETTER.items():
+        for pattern, better in BETTER.items() if ANY.search(flat) else ():
             for match in re.finditer(pattern, flat, re.IGNORECASE):
                 if match[0].lower() not in ALLOWED.get(name, ()):
                     spot = flat[max(0, match.start() - 40) : match.end() + 20]
