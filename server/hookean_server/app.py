@@ -7,7 +7,7 @@ import secrets
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
-from fastapi import FastAPI
+from fastapi import Depends, FastAPI
 from fastapi.exceptions import RequestValidationError
 from starlette.exceptions import HTTPException
 from starlette.requests import Request
@@ -15,7 +15,7 @@ from starlette.responses import Response
 
 import hookean
 from hookean_server.hops import routes as routes_hops
-from hookean_server.http import openapi
+from hookean_server.http import openapi, queries
 from hookean_server.http.access import Table
 from hookean_server.http.anonymous import Visits
 from hookean_server.http.conformance import Always, Manners
@@ -114,7 +114,7 @@ def create_app(settings: Settings | None = None) -> FastAPI:
     )
     table = app.state.table = Table([*app.routes, *(route for part in parts for route in part.router.routes)])
     for part in parts:
-        app.include_router(part.router)
+        app.include_router(part.router, dependencies=[Depends(queries.known)])
     # the last one added is the outermost
     app.add_middleware(Visits, settings=settings, table=table)
     app.add_middleware(Paced, settings=settings)

@@ -246,3 +246,22 @@ def test_faulty_forms(client: httpx.Client, form: dict[str, Any], pointer: str) 
     found = problem(client.post("/v1/relax/3dm", **form), 422, "invalid-input")
     assert found["errors"][0]["pointer"].startswith(pointer)
     assert "/tmp" not in json.dumps(found)
+
+
+@pytest.mark.parametrize(
+    ("address", "faults"),
+    [
+        ("/v1/sessions?arays=list", ["/query/arays"]),
+        ("/v1/health?x=1&x=2&y", ["/query/x", "/query/y"]),
+        ("/v1/health?y=&x=1", ["/query/y", "/query/x"]),
+    ],
+)
+def test_unknown_parameters_of_an_address_are_named(client: httpx.Client, address: str, faults: list[str]) -> None:
+    """A misspelt one would have no effect, unseen; the sentence lists those that there are."""
+    said = problem(client.get(address), 422, "invalid-input")
+    assert [fault["pointer"] for fault in said["errors"]] == faults
+
+
+def test_the_parameters_of_an_operation_are_listed_where_one_is_misspelt(client: httpx.Client) -> None:
+    said = problem(client.get("/v1/sessions/none/state?fromat=npz"), 422, "invalid-input")
+    assert "format" in said["detail"]
