@@ -213,7 +213,7 @@ GOALS: dict[str, Swap] = {
     ),
     "collider": replace(
         halved("CollideLines", "collider", "strength", objects="connection", radii="radius"),
-        differs=f"{HALF}; lines alone: points with a radius are Collide; lines that share an end ignore each other",
+        differs=f"{HALF}; lines that share an end ignore each other",
         without=dict.fromkeys(("ignorea", "ignoreb"), "lines of one `collision_group` ignore each other"),
     ),
     "coincident": halved(
