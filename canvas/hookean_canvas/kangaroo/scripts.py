@@ -242,17 +242,28 @@ for number, item in enumerate(canvas.listed(_meshes) + canvas.listed(_others)):
         points.append(canvas.geometry.to_point(place))
         numbers.append(number)
 '''
-BODIES = '''"""The points of each body in a branch: the vertices of its mesh, and points that move with it."""
+BODIES = '''"""The points of each body in a branch: the vertices of its mesh, points that move with it, its frame's origin."""
 
 from hookean_client import canvas
 
-found, extra = [], [items for _, items in canvas.geometry.branches(points_)] or [[]]
+
+def nth(rows, number):
+    return rows[min(number, len(rows) - 1)] if rows else []
+
+
+frames = [canvas.geometry.to_point([p.Origin.X, p.Origin.Y, p.Origin.Z]) for p in canvas.listed(frames_)]
+extra = [[item for item in items if item is not None] for _, items in canvas.geometry.branches(points_)]
+bodies = []
 for number, (path, items) in enumerate(canvas.geometry.branches(meshes_)):
-    more = extra[min(number, len(extra) - 1)]
     for place, item in enumerate(items):
-        body = [canvas.geometry.to_point(one) for one in canvas.geometry.mesh(item)["vertices"]]
-        found.append(("%s;%d}" % (path.rstrip("}"), place), body + [one for one in more if one is not None]))
-points = canvas.geometry.to_tree(found or canvas.geometry.branches(points_))
+        corners = [canvas.geometry.to_point(one) for one in canvas.geometry.mesh(item)["vertices"]]
+        bodies.append(("%s;%d}" % (path.rstrip("}"), place), corners + nth(extra, number)))
+if not bodies:
+    bodies = list(zip([path for path, _ in canvas.geometry.branches(points_)], extra))
+origins = [nth(frames, number) for number in range(len(bodies))]
+rows = [(path, body + ([origin] if origin else [])) for (path, body), origin in zip(bodies, origins)]
+points = canvas.geometry.to_tree(rows)
+planes = frames_
 '''
 MATES = '''"""Three corners of each of two faces."""
 
@@ -278,8 +289,12 @@ HELPERS = {
         "Bodies",
         "Points of bodies",
         BODIES,
-        (Slot("meshes_", "Meshes, one for each body", 2), Slot("points_", "Points that move with them", 2)),
-        (Slot("points", "Points of each body"),),
+        (
+            Slot("meshes_", "Meshes, one for each body", 2),
+            Slot("points_", "Points that move with them", 2),
+            Slot("frames_", "Planes, one for each body, whose origins move with it", 2),
+        ),
+        (Slot("points", "Points of each body"), Slot("planes", "The planes")),
     ),
     "*mates": Recipe(
         "Mates",
