@@ -51,7 +51,7 @@ def translated(d: Kangaroo) -> tuple[Chunk, Report]:
     before = d.archive()
     after, report = kangaroo.translate(before, "sample.gh")
     assert lint.faults(after) == [] and overlapping(before, after) == []
-    assert report.wires == len(wires(before)) == report.kept + len(report.lost)
+    assert report.wires == len(wires(before)) == report.kept + len(report.lost) + len(report.idle)
     assert len(wires(before) & wires(after)) <= report.kept <= len(wires(after))
     assert remaining(after) == report.kangaroo - len(report.swapped)
     return after, report
@@ -226,7 +226,7 @@ def test_a_mesh_and_a_plane_become_a_contact_of_its_corners() -> None:
     assert [part.id for part in behind(after, found, "normal")] == [planes.id]
     assert [part.id for part in behind(after, found, "origin")] == [planes.id]
     assert [part.label for part in behind(after, planes, "planes")] == ["Ground"]
-    assert [part.label for part in behind(after, the(after, "MVerts"), "mesh")] == ["Block"]
+    assert [part.label for part in behind(after, the(after, "Solids"), "meshes")] == ["Block"]
     assert report.complete
 
 

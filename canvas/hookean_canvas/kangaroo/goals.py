@@ -383,7 +383,7 @@ GOALS: dict[str, Swap] = {
     "solidplanecollide": Swap(
         (
             Piece("SolidPlaneCollide", {"strength": "strength"}, {"force": "solidplanecollide"}),
-            Piece("MeshVertices", {"solid": "mesh"}, feeds={"points": "0.point"}),
+            Piece("*solids", {"solid": "meshes"}, feeds={"points": "0.point"}),
             Piece("*plane", {"collisionplane": "planes"}, feeds={"origin": "0.origin", "normal": "0.normal"}),
         ),
         "k for each corner; Kangaroo's law is not published",

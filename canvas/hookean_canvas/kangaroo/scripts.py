@@ -232,39 +232,6 @@ def at(item):
 places = [canvas.geometry.to_point(at(item)) for item in chosen or given]
 targets = [canvas.geometry.to_point(at(item)) for item in given] or places
 '''
-SOLIDS = '''"""The corners of meshes, and the number of the mesh of each."""
-
-from hookean_client import canvas
-
-points, numbers = [], []
-for number, item in enumerate(canvas.listed(_meshes) + canvas.listed(_others)):
-    for place in canvas.geometry.mesh(item)["vertices"]:
-        points.append(canvas.geometry.to_point(place))
-        numbers.append(number)
-'''
-BODIES = '''"""The points of each body in a branch: the vertices of its mesh, points that move with it, its frame's origin."""
-
-from hookean_client import canvas
-
-
-def nth(rows, number):
-    return rows[min(number, len(rows) - 1)] if rows else []
-
-
-frames = [canvas.geometry.to_point([p.Origin.X, p.Origin.Y, p.Origin.Z]) for p in canvas.listed(frames_)]
-extra = [[item for item in items if item is not None] for _, items in canvas.geometry.branches(points_)]
-bodies = []
-for number, (path, items) in enumerate(canvas.geometry.branches(meshes_)):
-    for place, item in enumerate(items):
-        corners = [canvas.geometry.to_point(one) for one in canvas.geometry.mesh(item)["vertices"]]
-        bodies.append(("%s;%d}" % (path.rstrip("}"), place), corners + nth(extra, number)))
-if not bodies:
-    bodies = list(zip([path for path, _ in canvas.geometry.branches(points_)], extra))
-origins = [nth(frames, number) for number in range(len(bodies))]
-rows = [(path, body + ([origin] if origin else [])) for (path, body), origin in zip(bodies, origins)]
-points = canvas.geometry.to_tree(rows)
-planes = frames_
-'''
 MATES = '''"""Three corners of each of two faces."""
 
 from hookean_client import canvas
@@ -276,26 +243,6 @@ for one, other in zip(*canvas.matched(canvas.listed(_faces), canvas.listed(_othe
 '''
 
 HELPERS = {
-    "*solids": Recipe(
-        "Solids",
-        "Solids",
-        "Corners of meshes by their bodies",
-        SOLIDS,
-        (Slot("_meshes", "Meshes", 1, "mesh"), Slot("_others", "Other meshes", 1, "mesh")),
-        (Slot("points", "Corners"), Slot("numbers", "Number of the mesh of each")),
-    ),
-    "*bodies": Recipe(
-        "Bodies",
-        "Bodies",
-        "Points of bodies",
-        BODIES,
-        (
-            Slot("meshes_", "Meshes, one for each body", 2),
-            Slot("points_", "Points that move with them", 2),
-            Slot("frames_", "Planes, one for each body, whose origins move with it", 2),
-        ),
-        (Slot("points", "Points of each body"), Slot("planes", "The planes")),
-    ),
     "*mates": Recipe(
         "Mates",
         "Mates",
@@ -411,8 +358,6 @@ HELPERS = {
     ),
 }
 TOLD = {
-    "*solids": "a script for corners",
-    "*bodies": "a script for points",
     "*mates": "a script for corners",
     "*ends": "a script for ends",
     "*snap": "a script for ends and moments",

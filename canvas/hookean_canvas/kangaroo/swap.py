@@ -202,7 +202,7 @@ class Swapping:
             self._beside(port, guid, chunk, box)
 
     def _express(self, old: Chunk, port: Chunk, slot: Slot) -> None:
-        """A parameter that has the expression of an input, which scripts cannot have; it takes over the input's id."""
+        """A parameter with the expression of an input, which scripts cannot have; it takes over the id."""
         given: UUID = port.value("InstanceGuid")
         port.put("InstanceGuid", Type.GUID, uuid5(given, "in expressed"))
         guid, chunk, box = make.expressed(given, _title(slot), old, slot.hint)
@@ -211,7 +211,7 @@ class Swapping:
         self._beside(port, guid, chunk, box)
 
     def _mesh(self, old: Chunk, port: Chunk) -> None:
-        """A parameter that makes meshes of what is wired, as an input of Kangaroo's does; it takes over the id."""
+        """A parameter that makes meshes of what is wired; it takes over the id."""
         given: UUID = port.value("InstanceGuid")
         port.put("InstanceGuid", Type.GUID, uuid5(given, "in meshed"))
         chunk = containers.parameter(given, PARAMETERS["Mesh"], "Mesh", [])
