@@ -131,7 +131,7 @@ def polyline(item):
 
 def lines(items, points=False):
     """Straight lines [start, end] of lines, polylines and edges of meshes, and how many each item gives; with `points`,
-    a point is a line without length."""
+    a point is a line that starts and ends there."""
     found, counts = [], []
     for item in listed(items):
         corners = [point(item)] * 2 if points and is_place(item) else polyline(item)
