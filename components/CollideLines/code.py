@@ -2,9 +2,9 @@
 
 a and b are the radii of two capsules, d is the shortest distance of their lines, and the force k (a
 + b - d) acts where they are nearest, on both ends of each line by the lever rule. All capsules of
-the force can touch, except those that share a particle and those of one `collision_group`. Two
-pressed together with a force F overlap by F / k. Lines that cross have no direction in which to
-part: nothing pushes them.
+the force can touch, except those that share a particle and those of one `collision_group`. A line
+that starts and ends at one particle is a sphere. Two pressed together with a force F overlap by F /
+k. Lines that cross have no direction in which to part: nothing pushes them.
 
 The contact of two capsules is one point. Of parallel ones it is in the middle of where they are
 beside each other, and it moves quickly as they turn: piles of parallel capsules may not come to

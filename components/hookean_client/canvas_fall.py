@@ -2,7 +2,11 @@
 
 from .canvas_packed import unpacked
 
-HOLDING = ("anchor_spring", "pull_to_curve", "pull_to_mesh")  # these hold particles in every direction
+HOLDING = (
+    "anchor_spring", "support", "pull_to_curve", "pull_to_mesh", "pull_to_surface", "pull_to_plane", "pull_to_line",
+    "level_set", "collide_solid", "collide_curve", "solid_plane_collide",
+)  # fmt: skip
+"""These hold particles, or may come to hold them."""
 ROUNDING = 1e-6  # of the sizes of the loads: what rounding leaves of a sum that is zero
 
 

@@ -61,6 +61,12 @@ def is_point(item):
     return isinstance(item, (list, tuple)) and len(item) == 3 and all(isinstance(part, NUMBERS) for part in item)
 
 
+def is_place(item):
+    """Whether it is a point: plain, or one of Rhino's."""
+    item = value(item)
+    return is_point(item) or hasattr(item, "Location") or (hasattr(item, "X") and hasattr(item, "Z"))
+
+
 def matrix(value):
     """The numbers of a transformation, row by row: of one of Rhino's, or as given."""
     items = listed(value)
@@ -123,11 +129,12 @@ def polyline(item):
     return [point(found[i]) for i in range(_count(found))] if found else None
 
 
-def lines(items):
-    """Straight lines [start, end] of lines, polylines and edges of meshes, and how many each item gives."""
+def lines(items, points=False):
+    """Straight lines [start, end] of lines, polylines and edges of meshes, and how many each item gives; with `points`,
+    a point is a line that starts and ends there."""
     found, counts = [], []
     for item in listed(items):
-        corners = polyline(item)
+        corners = [point(item)] * 2 if points and is_place(item) else polyline(item)
         if corners is not None:
             new = [corners[i : i + 2] for i in range(len(corners) - 1)]
         elif is_mesh(item):

@@ -52,7 +52,7 @@ def force(source, kind, fields):
     names = sorted(lists)
     rows = matched(items, *[lists[name] for name in names])
     if place == ["lines"]:
-        made["lines"], spread = geometry.lines(rows[0])
+        made["lines"], spread = geometry.lines(rows[0], points=kind == "collide_lines")
     else:
         made[place[0]] = rows[0]
     for name, values, given in zip(names, rows[1:], [lists[name] for name in names]):

@@ -16,6 +16,7 @@ from canvas.test_engine import Cable
 from canvas.test_tools import Placed
 from canvas.test_tools_sweep import cable, tree
 from hookean import Scene, relax
+from hookean.forces import KINDS
 from hookean_canvas.run import stand_in
 from hookean_client import canvas_fall, canvas_packed, compas_canvas
 from serving import Home
@@ -87,6 +88,13 @@ def test_what_falls_is_what_moves_as_a_whole(told: dict[str, Any], axes: str) ->
     moved = end - start
     # after t = 0.02 the centre has moved by a t^2 / 2 = 2e-4 |F| / m; rounding leaves 1e-16
     assert "".join(axis for axis, part in zip("xyz", moved, strict=True) if abs(part) > 1e-9) == axes
+
+
+@pytest.mark.parametrize("kind", canvas_fall.HOLDING)
+def test_what_can_hold_a_particle_is_no_fall(kind: str) -> None:
+    """Forces against what stays where it is; it falls without them."""
+    assert KINDS[kind].role == "support"
+    assert canvas_fall.sentence(scene(DOWN, {"kind": kind})) is None and canvas_fall.sentence(scene(DOWN))
 
 
 def test_anchors_that_meet_no_particle_hold_nothing() -> None:

@@ -51,7 +51,7 @@ def translated(d: Kangaroo) -> tuple[Chunk, Report]:
     before = d.archive()
     after, report = kangaroo.translate(before, "sample.gh")
     assert lint.faults(after) == [] and overlapping(before, after) == []
-    assert report.wires == len(wires(before)) == report.kept + len(report.lost)
+    assert report.wires == len(wires(before)) == report.kept + len(report.lost) + len(report.idle)
     assert len(wires(before) & wires(after)) <= report.kept <= len(wires(after))
     assert remaining(after) == report.kangaroo - len(report.swapped)
     return after, report
@@ -226,7 +226,7 @@ def test_a_mesh_and_a_plane_become_a_contact_of_its_corners() -> None:
     assert [part.id for part in behind(after, found, "normal")] == [planes.id]
     assert [part.id for part in behind(after, found, "origin")] == [planes.id]
     assert [part.label for part in behind(after, planes, "planes")] == ["Ground"]
-    assert [part.label for part in behind(after, the(after, "MVerts"), "mesh")] == ["Block"]
+    assert [part.label for part in behind(after, the(after, "Solids"), "meshes")] == ["Block"]
     assert report.complete
 
 
@@ -509,11 +509,33 @@ def test_a_classic_component_that_is_a_cluster_of_others_is_translated_by_its_na
 
 
 def test_encoded_scripts_are_found_wherever_the_name_starts() -> None:
-    from hookean_canvas.kangaroo.ids import _ENCODED
+    from hookean_canvas.kangaroo.coded import _ENCODED
 
     for before in ("", "x", "xx", "xxx"):
         text = base64.b64encode(f"{before}KangarooSolver # more".encode()).decode()
         assert any(code in text for code in _ENCODED)
+
+
+@pytest.mark.parametrize("encoded", [False, True])
+def test_a_script_that_uses_kangaroo_is_reported_with_what_it_does(encoded: bool) -> None:
+    """A C# script with a goal of its own, one of Kangaroo's, and a solver that it steps itself."""
+    code = (
+        "using KangarooSolver;\nvar PS = new KangarooSolver.PhysicalSystem();\n"
+        "var a = new KangarooSolver.Goals.Anchor(p, 1.0); var s = new Goals.Spring(0, 1, 2.0, 3.0);\n"
+        "public class Swirl : GoalObject { }\n"
+    )
+    d = Kangaroo("coded", "Coded", "A script.")
+    script = d.native_like("C# Script", "a9a8ebd2-fff5-4c44-a8f5-739736d129ba", ["x"], "A")
+    text = base64.b64encode(code.encode()).decode() if encoded else code
+    script.container.put("ScriptSource", Type.STRING, text)
+    d.solved(script)
+    _, report = translated(d)
+    [why] = [why for _, why in report.stays if why.startswith("a script")]
+    assert why == (
+        "a script that uses Kangaroo's solver: it defines goals of its own (Swirl); makes goals of Kangaroo's "
+        "(Anchor, Spring); runs a solver of its own"
+    )
+    assert report.whole == 0
 
 
 def test_members_and_wires_that_were_never_there_stay_and_are_reported() -> None:

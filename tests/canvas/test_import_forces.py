@@ -146,6 +146,23 @@ def test_points_are_fitted_and_kept_out_of_curves_by_the_whole_strength(tmp_path
     d.check(tmp_path)
 
 
+def test_points_and_lines_of_a_collider_are_spheres_and_capsules_of_its_radii(tmp_path: Path) -> None:
+    """Between anchors of h, two that overlap by e part by e k / (2 k + h) each, k half of the strength."""
+    d = Bench("collider")
+    balls = [d.point(0, 0, 0), d.point(0.8, 0, 0)]
+    d.goal("Collider", {"Objects": None, "Radii": 0.5, "Strength": 100.0}, objects=balls)
+    d.soft(balls)
+    d.at_rest((-0.2 * 50.0 / (100.0 + HOLD), 0, 0))
+
+    ends, ball = [d.point(0, 10, 0), d.point(2, 10, 0)], d.point(1, 10, 0.9)
+    d.goal("Collider", {"Objects": None, "Radii": 0.5, "Strength": 100.0}, objects=[d.line(*ends), ball])
+    d.soft([*ends, ball])
+    force = 0.1 / (1.0 / 50.0 + 1.0 / HOLD + 0.5 / HOLD)  # both ends of the line carry half of it
+    d.at_rest((1, 10, 0.9 + force / HOLD))
+    d.at_rest((0, 10, -0.5 * force / HOLD))
+    d.check(tmp_path)
+
+
 def test_points_of_a_rigid_body_keep_their_shape_and_move_as_one(tmp_path: Path) -> None:
     """A square, one corner pulled by 4 N along x towards its neighbour: 4 anchors of h carry it, and the body is as
     stiff as its strength: the force moves all of it by 1 N / h, and turns it about the middle, by M / (4 h r^2)."""

@@ -17,6 +17,7 @@ from hookean_canvas.archive import Type
 from hookean_canvas.archive.guids import BOOLEAN_TOGGLE
 from hookean_canvas.archive.parts import parts
 from hookean_canvas.kangaroo import translate as kangaroo
+from hookean_canvas.kangaroo.bodies import SOLIDS
 from hookean_canvas.run import graph
 from hookean_canvas.run.evaluate import Canvas
 
@@ -185,6 +186,65 @@ def test_the_corners_of_a_part_are_particles_of_its_body(tmp_path: Path) -> None
     every = [(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)] + [(0.0, 2.0, 0.0)]
     far = [min(np.linalg.norm(found - place, axis=1)) for place in np.array(every)]
     assert max(far) < 1e-3 and len(found) == 9, found
+
+
+def test_a_body_of_a_brep_carries_its_part_and_the_origin_of_its_frame(tmp_path: Path) -> None:
+    """A cube of 2 that falls on a plane by 4 N at its middle, where a frame is: each of 4 corners of k = 5 sinks in by
+    1 / 5. Wires that only name the body are listed apart, and the planes come out as they went in."""
+    d = Kangaroo("brep body", "Brep body", "A box on a plane.")
+    middle = d.point(0, 0, 3)
+    frame, ground = d.native("XY Plane", origin=middle), d.native("XY Plane", origin=d.point(0, 0, 0))
+    box = d.native("Center Box", base=frame, x=1, y=1, z=1)["Box"]
+    part = (("Part", None), ("Plane", None), ("Points", None), ("Strength", 1e5))
+    body = d.kangaroo(
+        "RigidBody", part, ["RigidBody", "Planes"], guid=UUID("e245de5b-6d3b-48d3-8092-3bf0202ebf8f"), part=box,
+        plane=frame,
+    )  # fmt: skip
+    typed = (("Solid", None), ("SolidPlane", None), ("CollisionPlane", None), ("Strength", 5.0))
+    rests = d.kangaroo(
+        "SolidPlaneCollide", typed, ["SolidPlaneCollide"], solid=box, solidplane=frame, collisionplane=ground
+    )
+    load = d.kangaroo("Load", (("P", None), ("FV", (0.0, 0.0, -4.0))), ["U"], p=middle)
+    solver = d.solved(body["RigidBody"], rests, load, reset=d.toggle("Reset", False))
+    d.panel("particles", solver["V"])
+    d.panel("shown", solver["O"])
+    d.panel("planes", body["Planes"])
+    _, report = kangaroo.translate(d.archive(), "body.gh")
+    assert report.complete and [wire for wire, _ in report.idle] == ["XY.P > SolidPlaneCollide.SolidPlane"]
+    assert report.wires == report.kept + 1 and "Wires that are not needed" in report.text()
+    outcome = ran(d, tmp_path)
+    found = np.unique(places(outcome).round(4), axis=0)
+    every = [(x, y, z) for x in (-1.0, 1.0) for y in (-1.0, 1.0) for z in (-0.2, 1.8)] + [(0.0, 0.0, 0.8)]
+    np.testing.assert_allclose(found, sorted(every), atol=1e-3)
+    [shown] = outcome.panels["shown"].values_in_order()
+    corners = np.array([[v.X, v.Y, v.Z] for v in shown.Vertices])
+    np.testing.assert_allclose([corners[:, 2].min(), corners[:, 2].max()], [-0.2, 1.8], atol=1e-3)
+    assert [p.Origin.Z for p in outcome.panels["planes"].values_in_order()] == [3.0]
+
+
+def test_corners_of_solids_are_where_three_faces_meet() -> None:
+    """A block of quads and triangles has its 8 corners, whatever is on its faces and edges; a net of one face all."""
+    scope: dict[str, Any] = {}
+    start = SOLIDS.index("def corners_of")
+    exec(SOLIDS[start : SOLIDS.index("points, numbers")], scope)
+    vertices, faces = [], []
+    for axis in range(3):
+        for far in (0.0, 3.0):
+            first = len(vertices)
+            for i in range(4):
+                for j in range(4):
+                    place = [float(i), float(j)]
+                    place.insert(axis, far)
+                    vertices.append(place)
+            for i in range(3):
+                for j in range(3):
+                    a = first + 4 * i + j
+                    quad = [a, a + 1, a + 5, a + 4]
+                    faces += [quad] if axis else [quad[:3], [quad[0], quad[2], quad[3]]]
+    found = scope["corners_of"]({"vertices": vertices, "faces": faces})
+    assert found == [[x, y, z] for x in (0.0, 3.0) for y in (0.0, 3.0) for z in (0.0, 3.0)]
+    flat = {"vertices": vertices[:16], "faces": [[0, 1, 5, 4]]}
+    assert scope["corners_of"](flat) == vertices[:16]
 
 
 def test_a_file_that_is_not_translated_yet_says_what_to_do() -> None:

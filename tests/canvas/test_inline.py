@@ -187,6 +187,16 @@ def test_a_script_carries_what_it_needs_of_the_client_and_no_more():
     )
 
 
+@pytest.mark.parametrize("name", bundles.names())
+def test_all_that_a_script_carries_loads_where_it_is_the_first_script(name: str) -> None:
+    """Modules travel in blocks: each finds what it imports at the top among those that the script carries."""
+    sources = dict(inline._sources(CLIENT))
+    code = bundles.read(name).code
+    packed = [one for block in inline._blocks(inline.carried(code, sources), sources) for one in block]
+    for module in packed:
+        assert inline._imported(sources[module], sources, set()) <= set(packed), module
+
+
 def test_a_definition_stores_once_what_its_scripts_share(tmp_path):
     """A second component of a kind adds less to the compressed file than half of the client that it carries."""
     sizes = []

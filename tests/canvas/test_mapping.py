@@ -53,6 +53,21 @@ def test_a_graph_mapper_gives_the_height_of_its_curve(names: str) -> None:
     assert near(found(d), [10.0, 10.0, 10.0 + 10.0 / 64, 11.25, 20.0, 20.0])
 
 
+def test_a_graph_mapper_is_read_as_files_of_grasshopper_have_it() -> None:
+    """The domains in a chunk of their own, the kind by its name, and grips cpx and cpy with indices."""
+    d = Kangaroo("mapper", "Mapper", "Numbers through a curve.")
+    mapper = held(d, GRAPH_MAPPER, "Graph Mapper", d.parameter("Number", "x", [0.0, 1.0, 2.0]))
+    local = mapper.container.add("LocalGraph")
+    domain = local.add("Domain")
+    for name, value in (("x0", 0.0), ("x1", 2.0), ("y0", 10.0), ("y1", 20.0)):
+        domain.put(name, Type.DOUBLE, value)
+    curve = local.add("Graph").put("container_name", Type.STRING, "Bezier")
+    for i, grip in enumerate([(0, 0), (1 / 3, 0), (2 / 3, 0), (1, 1)]):
+        curve.put("cpx", Type.DOUBLE, float(grip[0]), i).put("cpy", Type.DOUBLE, float(grip[1]), i)
+    d.panel("found", mapper)
+    assert near(found(d), [10.0, 11.25, 20.0])
+
+
 def test_the_height_of_a_curve_is_that_of_the_point_with_this_x() -> None:
     grips = np.array([(0.0, 0.2), (0.7, 0.1), (0.9, 0.95), (1.0, 0.6)])
     for t in np.linspace(0.01, 0.99, 9):

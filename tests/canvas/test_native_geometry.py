@@ -261,3 +261,17 @@ def test_rectangles_are_recognised_by_their_corners() -> None:
     assert near([plain(frame)[0], width, height], [(0, 0, 0), 2.0, 2.0])
     assert shapes.rectangle(made([(0, 0, 0), (2, 0, 0), (3, 2, 0), (0, 2, 0), (0, 0, 0)])) is None
     assert shapes.corners(rhino3dm.ArcCurve.CreateFromCircle(rhino3dm.Circle(1.0))) is None
+
+
+def test_the_mesh_of_a_round_brep_is_as_near_to_it_as_its_normals_turn_little() -> None:
+    """Rows of 9 degrees: the middle of a face of a unit ball is 1 - cos(4.5 degrees) of each way inside, at most; a
+    solid of flat faces needs no more than their corners."""
+    ball = rhino3dm.Sphere(rhino3dm.Point3d(0, 0, 0), 1.0).ToBrep()
+    vertices, faces = shapes.mesh_parts(BY_NAME["Mesh Brep"].run(ball, None)[0])
+    middles = np.array([np.mean(vertices[list(face)], axis=0) for face in faces])
+    assert np.linalg.norm(middles, axis=1).min() > 1.0 - 2.0 * (1.0 - np.cos(np.pi / 40)) - 1e-6
+    assert len(faces) == 800
+    box = shapes.plane((0, 0, 0), (1, 0, 0), (0, 1, 0))
+    made = BY_NAME["Center Box"].run(box, 1.0, 1.0, 1.0)[0]
+    corners = shapes.mesh_parts(as_kind("mesh", made))[0]
+    assert len(np.unique(np.round(corners, 9), axis=0)) == 8

@@ -165,6 +165,25 @@ def test_capsules_of_a_chain_and_of_a_group_ignore_each_other() -> None:
         assert not alone.any()
 
 
+def test_a_line_that_starts_and_ends_at_one_particle_is_a_sphere() -> None:
+    """A ball of 0.4 that slides down onto a bar of 0.3 by a force P: it sinks in by P / k."""
+    x = [[0, 0, 0], [2, 0, 0], [0.7, 0, 0.65]]
+    scene = {
+        "particles": x,
+        "forces": [
+            {"kind": "collide_lines", "particles": [[0, 1], [2, 2]], "radius": [0.3, 0.4], "strength": 50.0},
+            {"kind": "unary", "particles": [2], "vector": [0, 0, -2.0]},
+        ],
+        "anchors": [{"particles": [0, 1]}, {"particles": [2], "axes": "xy"}],
+        "settings": {"tolerance": 1e-10},
+    }
+    read = Scene.read(scene)
+    assert compile(read).report.warnings == []
+    result = relax(read)
+    assert result.converged
+    np.testing.assert_allclose(result.particles[2], [0.7, 0, 0.7 - 2.0 / 50.0], atol=1e-9)
+
+
 def test_parallel_capsules_push_in_the_middle_of_where_they_are_beside_each_other() -> None:
     """From 1 to 2 of lines from 0 to 2 and 1 to 3: at 3/4 of the first and 1/4 of the second."""
     x = np.array([[0, 0, 0], [2, 0, 0], [1, 0, 0.5], [3, 0, 0.5]])

@@ -11,8 +11,10 @@ from hypothesis import strategies as st
 
 from core.test_pulls import on_triangles
 from hookean import Scene, relax
+from hookean.compiled.dispatch import compiled
 from hookean.errors import InputError
 from hookean.forces import CollideSolid
+from hookean.forces.collide_solid import GRID, solid_kernel
 from hookean.system.system import compile
 from laws import laws
 from laws.cases import case_of
@@ -241,3 +243,24 @@ def test_a_solid_is_a_closed_mesh(fields: Any, message: str) -> None:
     with pytest.raises(InputError, match=message):
         force = {"kind": "collide_solid", "particles": [0], **fields}
         compile(Scene(particles=[[0.0, 0.0, 2.0]], meshes=meshes, forces=[force]))
+
+
+@pytest.mark.parametrize("inside", [False, True])
+def test_the_grid_of_distances_changes_no_bit_of_any_contact(inside: bool) -> None:
+    """Spheres all about a spiked ball, on it and in it: forces, energy and stiffness with the grid and without it."""
+    vertices, faces = spiked(5)
+    rng = np.random.default_rng(7)
+    x = np.vstack([rng.uniform(-3, 3, (400, 3)), vertices, vertices * 1.001, 0.05 * vertices])
+    force = {"kind": "collide_solid", "particles": np.arange(len(x)), "vertices": vertices, "faces": faces}
+    force |= {"radius": rng.uniform(0.0, 0.2, len(x)), "strength": 10.0, "inside": inside}
+    group = compile(Scene.read({"particles": x, "forces": [force]})).groups[0]
+    kernel, found = compiled(solid_kernel, "force"), []
+    for grid in (group.block.parameters[:, GRID], 0.0):
+        table, f, w = group.block.parameters.copy(), np.zeros_like(x), np.zeros(len(x))
+        table[:, GRID] = grid
+        energy = kernel(x, np.zeros_like(x), group.block.indices, table, group.block.memory, f, w)
+        found.append((energy, f, w))
+    for one, other in zip(*found, strict=True):
+        np.testing.assert_array_equal(one, other)
+    touching = np.abs(found[0][1]).sum(axis=1) > 0
+    assert 0.05 < touching.mean() < 0.99

@@ -167,3 +167,14 @@ def test_a_free_body_under_stress_is_a_mechanism_whatever_the_tolerance(toleranc
     found = relax(Scene.read({"particles": CUBE[[0, 4, 2]], "forces": forces, "settings": settings}))
     assert found.converged and found.energy["total"] > 1.0
     assert (found.stability, found.soft_modes) == ("mechanism", 6)
+
+
+@pytest.mark.parametrize("solver", ["momentum", "auto"])
+def test_a_body_without_loads_that_has_its_shape_is_at_rest(solver: str) -> None:
+    """All that is left is rounding, 1e-16 of its stiffness times its size; that is no load to be judged by."""
+    turn = 2.0 * np.pi * np.arange(5) / 5.0
+    x = np.column_stack([np.cos(turn) + 2.2, np.sin(turn), 0.0 * turn])
+    body = {"kind": "rigid_body", "particles": np.arange(5), "strength": 10.0}
+    result = relax(Scene.read({"particles": x, "forces": [body], "settings": {"solver": solver}}))
+    assert result.converged and result.iterations == 0
+    np.testing.assert_allclose(result.particles, x, atol=1e-14)

@@ -55,9 +55,10 @@ _hookean_client(
 TOGETHER = (
     ("__init__", "canvas_geometry", "canvas_packed", "canvas_words", "canvas_items", "canvas"),
     ("transport", "finding", "client", "canvas_link", "canvas_ask"),
-    ("canvas_branches", "canvas_values", "canvas_discretize"),
+    ("canvas_branches", "canvas_values"),
 )
-"""Modules that travel as one: all scripts need the first, those that ask the service the second, tools the third."""
+"""Modules that travel as one: all scripts need the first, those that ask the service the second, tools the third. Each
+imports no module but those of its own and of what every script that needs any of them carries."""
 ENCODE = {"rhino8": ("b85decode", base64.b85encode), "rhino7": ("b64decode", base64.b64encode)}
 """Python 2.7 has no base 85."""
 

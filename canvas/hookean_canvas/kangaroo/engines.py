@@ -83,7 +83,8 @@ def _solver(solver: str, differs: str, **without: str) -> Swap:
         "parallel": True,
     }
     told = {"threshold": _ENDS, **without}
-    return Swap((Piece("Engine", _GOALS, _SOLVED, {"reset": False}), settings), f"{differs}; {_OUT}", told, usual)
+    engine = Piece("Engine", _GOALS, _SOLVED, {"reset": False})
+    return Swap((engine, settings), f"{differs}; {_OUT}", told, usual, idle=("parallel",))
 
 
 _BOUNCY = _solver(

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from uuid import UUID
 
+from hookean_canvas.archive import Chunk
 from hookean_canvas.archive.guids import PARAMETERS, RELAY
 from hookean_canvas.archive.parts import sources
 from hookean_canvas.kangaroo.ids import key
@@ -63,3 +64,9 @@ def are_faces(streams: Streams, source: UUID) -> bool:
             seen |= new
             waiting += new
     return False
+
+
+def handed(streams: Streams, port: Chunk) -> list[UUID]:
+    """Where an input's geometry comes from: the parameter for meshes before it, which goes by its id, or its wires."""
+    wired = sources(port)
+    return [port.value("InstanceGuid")] if any(are_faces(streams, one) for one in wired) else wired

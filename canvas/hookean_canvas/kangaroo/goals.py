@@ -55,28 +55,16 @@ _LOAD = Swap(
     {"w": 1.0, "weighting": 1.0},
 )
 
-_CARRIED = "nothing is carried along; points that move with the body are particles of it"
-_RIGID = replace(
-    force(
-        "RigidBody",
-        "rigidbody",
-        "k for each particle; Kangaroo's law is not published",
-        points="point",
-        strength="strength",
-    ),
-    without={"plane": _CARRIED},
-    usual={"plane": None},
-)
-_PART = Swap(
+_NAMED = "a body is known by its points"
+_APART = "points that move with the body are particles of it"
+_BODIES = {"part": "meshes", "points": "points", "plane": "frames"}
+_RIGID = Swap(
     (
         Piece("RigidBody", {"strength": "strength"}, {"force": "rigidbody"}),
-        Piece("*bodies", {"part": "meshes", "points": "points"}, feeds={"points": "0.point"}),
+        Piece("*bodies", _BODIES, {"planes": "planes"}, feeds={"points": "0.point"}),
     ),
-    "the vertices of the part are particles of its body, too; k for each particle; Kangaroo's law is not published",
-    without={"plane": _CARRIED},
-    usual={"plane": None},
-    needs=("part",),
-    other=_RIGID,
+    "the vertices of a part and the origin of its plane are particles of its body, too; Planes are those at the start; "
+    "k for each particle; Kangaroo's law is not published",
 )
 
 _POLYGONS = Swap(
@@ -213,7 +201,7 @@ GOALS: dict[str, Swap] = {
     ),
     "collider": replace(
         halved("CollideLines", "collider", "strength", objects="connection", radii="radius"),
-        differs=f"{HALF}; lines alone: points with a radius are Collide; lines that share an end ignore each other",
+        differs=f"{HALF}; lines that share an end ignore each other",
         without=dict.fromkeys(("ignorea", "ignoreb"), "lines of one `collision_group` ignore each other"),
     ),
     "coincident": halved(
@@ -388,18 +376,20 @@ GOALS: dict[str, Swap] = {
             Piece("*solids", {"mesha": "meshes", "meshb": "others"}, feeds={"points": "0.point", "numbers": "0.group"}),
         ),
         "the convex hulls of both meshes; k is a pressure by depth here, and Kangaroo's law is not published",
-        without=dict.fromkeys(("planea", "planeb"), _CARRIED),
+        without=dict.fromkeys(("planea", "planeb"), _NAMED),
         usual=dict.fromkeys(("planea", "planeb"), None),
+        idle=("planea", "planeb"),
     ),
     "solidplanecollide": Swap(
         (
             Piece("SolidPlaneCollide", {"strength": "strength"}, {"force": "solidplanecollide"}),
-            Piece("MeshVertices", {"solid": "mesh"}, feeds={"points": "0.point"}),
+            Piece("*solids", {"solid": "meshes"}, feeds={"points": "0.point"}),
             Piece("*plane", {"collisionplane": "planes"}, feeds={"origin": "0.origin", "normal": "0.normal"}),
         ),
         "k for each corner; Kangaroo's law is not published",
-        without={"solidplane": _CARRIED},
+        without={"solidplane": _NAMED},
         usual={"solidplane": None},
+        idle=("solidplane",),
     ),
     "concentric": Swap(
         (
@@ -411,7 +401,7 @@ GOALS: dict[str, Swap] = {
             ),
         ),
         "axes start and end at points of their bodies; Kangaroo's law is not published",
-        without={**dict.fromkeys(("planea", "planeb"), _CARRIED), "flip": "an axis has no direction here"},
+        without={**dict.fromkeys(("planea", "planeb"), _APART), "flip": "an axis has no direction here"},
         usual={"planea": None, "planeb": None, "flip": False},
     ),
     "alignfaces": Swap(
@@ -424,7 +414,7 @@ GOALS: dict[str, Swap] = {
             ),
         ),
         "faces are outlines with corners at points of their bodies; Kangaroo's law is not published",
-        without=dict.fromkeys(("planea", "planeb"), _CARRIED),
+        without=dict.fromkeys(("planea", "planeb"), _APART),
         usual=dict.fromkeys(("planea", "planeb"), None),
     ),
     "isothermic": Swap(
@@ -444,5 +434,5 @@ GOALS: dict[str, Swap] = {
     "collide2d": _POLYGONS,
     "curvecollide": _POLYGONS,
     "rigidpointset": _RIGID,
-    "rigidbody": _PART,
+    "rigidbody": _RIGID,
 }

@@ -13,9 +13,10 @@ from uuid import UUID
 
 from hookean.errors import InputError
 from hookean_canvas import archive
-from hookean_canvas.archive import Chunk, Type
+from hookean_canvas.archive import Chunk
 from hookean_canvas.archive.chunk import CLUSTERS
 from hookean_canvas.archive.guids import CLUSTER, PANEL, SCRIBBLE
+from hookean_canvas.kangaroo.coded import used_by
 
 CLASSIC_LIBRARY = UUID("6bb8ff08-9dd5-cccd-7191-72c85ccf8b6a")
 SECOND_LIBRARY = UUID("c2ea695e-1a09-6f42-266d-113498879f60")
@@ -263,9 +264,7 @@ def hidden(thing: Chunk, of: dict[UUID, Generation], depth: int = 0) -> str | No
             return "a cluster that cannot be opened; it may hold components of Kangaroo"
         names = _names(inside, of, depth + 1)
         return f"a cluster that holds {', '.join(names)} of Kangaroo" if names else None
-    if thing.value("GUID") != CLUSTER and any(_imports(chunk) for chunk in container.walk()):
-        return "a script that uses Kangaroo's solver"
-    return None
+    return used_by(container) if thing.value("GUID") != CLUSTER else None
 
 
 def _names(inside: Chunk, of: dict[UUID, Generation], depth: int) -> list[str]:
@@ -276,15 +275,3 @@ def _names(inside: Chunk, of: dict[UUID, Generation], depth: int) -> list[str]:
             words = None if known else hidden(thing, of, depth)
             found += [known.name] if known else [words] if words else []
     return found
-
-
-def _imports(chunk: Chunk) -> bool:
-    """Whether a text of a script, plain or in base64, names Kangaroo's solver."""
-    texts = [
-        i.value for i in chunk.items if i.type == Type.STRING and i.name not in ("Name", "NickName", "Description")
-    ]
-    return any("KangarooSolver" in text or any(code in text for code in _ENCODED) for text in texts)
-
-
-_ENCODED = ("S2FuZ2Fyb29Tb2x2ZX", "thbmdhcm9vU29sdmVy", "LYW5nYXJvb1NvbHZlc")
-"""`KangarooSolver` in base64, at the three places it can start."""

@@ -14,7 +14,7 @@ from hookean_canvas.archive.guids import BOOLEAN_TOGGLE, NAMES, PANEL, PARAMETER
 from hookean_canvas.components import bundles, inline
 from hookean_canvas.definitions import containers
 from hookean_canvas.definitions.containers import Slot
-from hookean_canvas.kangaroo import engineering, held, rare, scripts, six
+from hookean_canvas.kangaroo import bodies, engineering, held, rare, scripts, six
 from hookean_canvas.kangaroo.recipe import Recipe
 
 LENGTH = UUID("c75b62fa-0a33-4da7-a5bd-03fd0068fd93")
@@ -141,6 +141,7 @@ HELPERS = {
     **six.HELPERS,
     **held.HELPERS,
     **rare.HELPERS,
+    **bodies.HELPERS,
 }
 """Small scripts where our components take other things than Kangaroo's."""
 

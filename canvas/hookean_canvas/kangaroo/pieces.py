@@ -28,6 +28,7 @@ class Swap:
     `pieces`: the first stands in its place. `differs`: a sentence. `without`: why an input has no counterpart.
     `usual`: what Kangaroo types into such an input, which says nothing. `needs`: inputs that identify the version.
     `unless`: inputs that must be empty or as usual, each with the reason. `other`: for versions that do not fit this.
+    `idle`: those of `without` that say nothing more than what is known here: wires into them are no loss.
     """
 
     pieces: tuple[Piece, ...]
@@ -37,6 +38,7 @@ class Swap:
     needs: tuple[str, ...] = ()
     unless: Mapping[str, str] = field(default_factory=dict)
     other: Swap | None = None
+    idle: tuple[str, ...] = ()
 
 
 def force(bundle: str, output: str, differs: str = "", needs: str = "", **inputs: str) -> Swap:

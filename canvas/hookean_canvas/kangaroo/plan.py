@@ -45,6 +45,7 @@ class Importing:
         self.space = Space(root)
         self.renamed: dict[UUID, UUID] = {}
         self.because: dict[UUID, str] = {}  # why wires into an input, or out of an output, are gone
+        self.idle: set[UUID] = set()  # inputs whose wires are no loss
         self.doubles: list[tuple[UUID, UUID]] = []  # an output of Kangaroo's, and a second one that goes with it
 
     @staticmethod

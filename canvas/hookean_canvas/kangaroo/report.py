@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 @dataclass
 class Report:
     """`swapped`: (component, what stands for it, what differs); `stays`: (component, why); `lost`: (wire, why).
+    `idle`: the same of wires that have nothing to do here.
 
     `solvers` counts the solvers of Kangaroo, `whole` those that were translated with all goals.
 
@@ -27,6 +28,7 @@ class Report:
     swapped: list[tuple[str, str, str]] = field(default_factory=list)
     stays: list[tuple[str, str]] = field(default_factory=list)
     lost: list[tuple[str, str]] = field(default_factory=list)
+    idle: list[tuple[str, str]] = field(default_factory=list)
     values: list[tuple[str, str]] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
 
@@ -42,11 +44,12 @@ class Report:
     def _lines(self) -> Iterator[str]:
         yield (
             f"{self.name}: {self.objects} objects, {self.kangaroo} of Kangaroo's, {len(self.swapped)} translated; "
-            f"{self.wires} wires, {self.kept} kept, {len(self.lost)} not"
+            f"{self.wires} wires, {self.kept} kept, {len(self.lost) + len(self.idle)} not"
             + (f"; {self.whole} of {self.solvers} solvers translated with all goals" if self.solvers else "")
         )
         yield from _part("Not translated", _together(self.stays))
         yield from _part("Wires that are gone", [f"{wire}: {why}" for wire, why in self.lost])
+        yield from _part("Wires that are not needed", [f"{wire}: {why}" for wire, why in self.idle])
         yield from _part("Typed values that are gone", [f"{where}: {why}" for where, why in self.values])
         yield from _part("Translated", _told_once(self.swapped))
         yield from _part("Note", self.notes)

@@ -232,28 +232,6 @@ def at(item):
 places = [canvas.geometry.to_point(at(item)) for item in chosen or given]
 targets = [canvas.geometry.to_point(at(item)) for item in given] or places
 '''
-SOLIDS = '''"""The corners of meshes, and the number of the mesh of each."""
-
-from hookean_client import canvas
-
-points, numbers = [], []
-for number, item in enumerate(canvas.listed(_meshes) + canvas.listed(_others)):
-    for place in canvas.geometry.mesh(item)["vertices"]:
-        points.append(canvas.geometry.to_point(place))
-        numbers.append(number)
-'''
-BODIES = '''"""The points of each body in a branch: the vertices of its mesh, and points that move with it."""
-
-from hookean_client import canvas
-
-found, extra = [], [items for _, items in canvas.geometry.branches(points_)] or [[]]
-for number, (path, items) in enumerate(canvas.geometry.branches(meshes_)):
-    more = extra[min(number, len(extra) - 1)]
-    for place, item in enumerate(items):
-        body = [canvas.geometry.to_point(one) for one in canvas.geometry.mesh(item)["vertices"]]
-        found.append(("%s;%d}" % (path.rstrip("}"), place), body + [one for one in more if one is not None]))
-points = canvas.geometry.to_tree(found or canvas.geometry.branches(points_))
-'''
 MATES = '''"""Three corners of each of two faces."""
 
 from hookean_client import canvas
@@ -265,22 +243,6 @@ for one, other in zip(*canvas.matched(canvas.listed(_faces), canvas.listed(_othe
 '''
 
 HELPERS = {
-    "*solids": Recipe(
-        "Solids",
-        "Solids",
-        "Corners of meshes by their bodies",
-        SOLIDS,
-        (Slot("_meshes", "Meshes", 1, "mesh"), Slot("_others", "Other meshes", 1, "mesh")),
-        (Slot("points", "Corners"), Slot("numbers", "Number of the mesh of each")),
-    ),
-    "*bodies": Recipe(
-        "Bodies",
-        "Bodies",
-        "Points of bodies",
-        BODIES,
-        (Slot("meshes_", "Meshes, one for each body", 2), Slot("points_", "Points that move with them", 2)),
-        (Slot("points", "Points of each body"),),
-    ),
     "*mates": Recipe(
         "Mates",
         "Mates",
@@ -396,8 +358,6 @@ HELPERS = {
     ),
 }
 TOLD = {
-    "*solids": "a script for corners",
-    "*bodies": "a script for points",
     "*mates": "a script for corners",
     "*ends": "a script for ends",
     "*snap": "a script for ends and moments",

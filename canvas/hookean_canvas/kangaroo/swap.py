@@ -13,7 +13,7 @@ from hookean_canvas.archive.parts import Part, bounds_of, inputs, outputs, sourc
 from hookean_canvas.definitions import containers
 from hookean_canvas.definitions.containers import Slot, wire
 from hookean_canvas.kangaroo import make
-from hookean_canvas.kangaroo.faces import are_faces, takes_meshes
+from hookean_canvas.kangaroo.faces import are_faces, handed, takes_meshes
 from hookean_canvas.kangaroo.ids import Known, key
 from hookean_canvas.kangaroo.pieces import Piece, Swap
 from hookean_canvas.kangaroo.recipe import Recipe
@@ -23,7 +23,7 @@ from hookean_canvas.kangaroo.space import size
 if TYPE_CHECKING:
     from hookean_canvas.kangaroo.plan import Importing
 
-CARRIED = {"length(line)": "line", "rod": "polyline", "edgelengths": "mesh"}
+CARRIED = {"length(line)": "line", "rod": "polyline", "edgelengths": "mesh", "rigidbody": "part"}
 """Goals of Kangaroo 2 whose output is the geometry of one of their inputs."""
 FLOATING = {"*geometry": "a Data parameter", "*nothing": "an empty Data parameter"}
 """Pieces that are no component, in words."""
@@ -202,7 +202,7 @@ class Swapping:
             self._beside(port, guid, chunk, box)
 
     def _express(self, old: Chunk, port: Chunk, slot: Slot) -> None:
-        """A parameter that has the expression of an input, which scripts cannot have; it takes over the input's id."""
+        """A parameter with the expression of an input, which scripts cannot have; it takes over the id."""
         given: UUID = port.value("InstanceGuid")
         port.put("InstanceGuid", Type.GUID, uuid5(given, "in expressed"))
         guid, chunk, box = make.expressed(given, _title(slot), old, slot.hint)
@@ -211,7 +211,7 @@ class Swapping:
         self._beside(port, guid, chunk, box)
 
     def _mesh(self, old: Chunk, port: Chunk) -> None:
-        """A parameter that makes meshes of what is wired, as an input of Kangaroo's does; it takes over the id."""
+        """A parameter that makes meshes of what is wired; it takes over the id."""
         given: UUID = port.value("InstanceGuid")
         port.put("InstanceGuid", Type.GUID, uuid5(given, "in meshed"))
         chunk = containers.parameter(given, PARAMETERS["Mesh"], "Mesh", [])
@@ -275,7 +275,7 @@ class Swapping:
             if (known := whole.known[id(part.chunk)]) and key(known.name) in CARRIED
             for port in whole.streams.inputs_before(part)
             if key(CARRIED[key(known.name)]) in map(key, names_of(port))
-            for source in sources(port)
+            for source in handed(whole.streams, port)
         ]
         connect(_input_of(self.made[0], "geometry"), carried)
 
@@ -326,6 +326,8 @@ class Swapping:
                 (w for k, w in self.swap.without.items() if k in map(key, names_of(port))), "it has no counterpart"
             )
             self.whole.because[found] = why
+            if set(self.swap.idle) & set(map(key, names_of(port))):
+                self.whole.idle.add(found)
             value = make.single(port)
             expected = next((v for k, v in self.swap.usual.items() if k in map(key, names_of(port))), make)
             if not sources(port) and make.stored(port) and expected is not None and value != expected:

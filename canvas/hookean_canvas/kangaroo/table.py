@@ -6,7 +6,7 @@ their variables without underscores. Sources of the differences: docs/from-kanga
 
 from __future__ import annotations
 
-from hookean_canvas.kangaroo import classic, engineering, engines, goals, held, rare, scripts, six, tools
+from hookean_canvas.kangaroo import bodies, classic, engineering, engines, goals, held, rare, scripts, six, tools
 from hookean_canvas.kangaroo.ids import COMPONENTS, Generation, Known, key
 from hookean_canvas.kangaroo.pieces import Swap
 from hookean_canvas.kangaroo.reasons import REASONS
@@ -64,4 +64,5 @@ _HELPER = {
     **six.TOLD,
     **held.TOLD,
     **rare.TOLD,
+    **bodies.TOLD,
 }

@@ -16,9 +16,9 @@ _SIZE = "edges have the same length all over"
 
 def _tool(
     bundle: str, inputs: Mapping[str, str], outputs: Mapping[str, str], differs: str = "",
-    without: Mapping[str, str] | None = None, usual: Mapping[str, Any] | None = None,
+    without: Mapping[str, str] | None = None, usual: Mapping[str, Any] | None = None, idle: tuple[str, ...] = (),
 ) -> Swap:  # fmt: skip
-    return Swap((Piece(bundle, inputs, outputs),), differs, without or {}, usual or {})
+    return Swap((Piece(bundle, inputs, outputs),), differs, without or {}, usual or {}, idle=idle)
 
 
 BOTH: dict[str, Swap] = {
@@ -125,6 +125,7 @@ CLASSIC: dict[str, Swap] = {
             "iterations": None,
             "reset": None,
         },
+        ("iterations", "iter", "reset"),
     ),
     "counter": _tool(
         "Counter",

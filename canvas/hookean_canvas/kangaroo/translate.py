@@ -103,7 +103,7 @@ def _count(work: Importing) -> None:
             report.kept += 1
         else:
             why = work.because.get(wire[1]) or work.because.get(wire[0]) or "its end was removed"
-            report.lost.append((work.streams.told(wire), why))
+            (report.idle if wire[1] in work.idle else report.lost).append((work.streams.told(wire), why))
     report.wires = len(work.streams.wires)
     report.notes += [
         f"the wire {work.streams.told(wire)} comes from nothing in the file" for wire in work.streams.dangling

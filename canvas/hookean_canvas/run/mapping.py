@@ -1,9 +1,10 @@
 """The Graph Mapper: the curve that a person has drawn in it, as a function of numbers.
 
-Grasshopper stores it in the chunk `LocalGraph`: the domains of both axes, and in `Graph` the id of the kind of curve,
-and its grips. A Bézier curve has four, the first and the last at the ends. The names of the numbers are not published,
-so they are read by their letters x and y; where these do not give four grips from one side to the other, the object is
-named as one that cannot run. Ids: public code that draws such a curve elsewhere.
+Grasshopper stores it in the chunk `LocalGraph`: in `Domain` x0, x1, y0 and y1 of both axes, and in `Graph` the id and
+the name of the kind of curve, and its grips. A Bézier curve has four, cpx and cpy, the first and the last at the ends.
+Older files may name the numbers in another way, so they are read by their letters x and y; where these do not give four
+grips from one side to the other, the object is named as one that cannot run. Names and ids: public code that reads such
+files, and that draws such a curve elsewhere.
 """
 
 from __future__ import annotations
@@ -30,7 +31,9 @@ def mapper_of(node: Node) -> Callable[[float], float] | None:
     """What a Graph Mapper does with a number; None where its curve is of a kind that is not known."""
     held = node.container.chunk("LocalGraph")
     graph = held.chunk("Graph") if held is not None else None
-    if held is None or graph is None or graph.value("container_id") != BEZIER:
+    if held is None or graph is None:
+        return None
+    if graph.value("container_id") != BEZIER and graph.value("container_name") != "Bezier":
         return None
     grips = _grips([item for chunk in graph.walk() for item in chunk.items])
     (x0, x1), (y0, y1) = (_ends(held, axis) for axis in "XY")
@@ -45,10 +48,14 @@ def mapper_of(node: Node) -> Callable[[float], float] | None:
 
 def _ends(chunk: Chunk, axis: str) -> tuple[float, float]:
     """The domain of an axis; 0 to 1 where none is stored."""
-    found = [chunk.value(f"{axis}{end}", default=float(end)) for end in (0, 1)]
-    return (
-        (float(found[0]), float(found[1])) if all(isinstance(one, (int, float, Decimal)) for one in found) else (0, 1)
-    )
+    stored = {
+        item.name.lower(): float(item.value)
+        for held in (chunk, chunk.chunk("Domain"))
+        for item in (held.items if held is not None else ())
+        if isinstance(item.value, (int, float, Decimal)) and not isinstance(item.value, bool)
+    }
+    first, last = (f"{axis}{end}".lower() for end in (0, 1))
+    return (stored[first], stored[last]) if first in stored and last in stored else (0.0, 1.0)
 
 
 def _grips(items: list[Item]) -> Array | None:

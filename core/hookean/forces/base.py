@@ -158,6 +158,7 @@ class Force(Model):
     shared: ClassVar[tuple[str, ...]] = ()  # columns of the force as a whole, not one row for each element
     outward: ClassVar[bool] = False  # a load along the normals of faces, so that it counts which way round these run
     solid: ClassVar[bool] = True  # something lies between the particles of an element, which others may touch
+    pointed: ClassVar[bool] = False  # an element may start and end at one particle
     momentary: ClassVar[bool] = False  # no force: momentum at moments, by `kick` and `next_moment`; it has no kernel
     rewired: ClassVar[bool] = False  # which of its elements feel one another changes with the shape
     # its particles have orientations: the indices of its elements go on with their slots and references, and a column

@@ -20,8 +20,9 @@ class CollideLines(Crowd):
 
     a and b are the radii of two capsules, d is the shortest distance of their lines, and the force k (a + b - d) acts
     where they are nearest, on both ends of each line by the lever rule. All capsules of the force can touch, except
-    those that share a particle and those of one `collision_group`. Two pressed together with a force F overlap by
-    F / k. Lines that cross have no direction in which to part: nothing pushes them.
+    those that share a particle and those of one `collision_group`. A line that starts and ends at one particle is a
+    sphere. Two pressed together with a force F overlap by F / k. Lines that cross have no direction in which to part:
+    nothing pushes them.
 
     The contact of two capsules is one point. Of parallel ones it is in the middle of where they are beside each other,
     and it moves quickly as they turn: piles of parallel capsules may not come to rest. Source: Ericson, Real-Time
@@ -39,6 +40,7 @@ class CollideLines(Crowd):
 
     formula: ClassVar[str] = "E = k (a + b - d)²/2"
     arity: ClassVar[int] = 2
+    pointed: ClassVar[bool] = True
 
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: those of all that collide, and the particles by which lines are joined."""

@@ -7,19 +7,21 @@ from typing import Any, ClassVar, Literal, Self
 import numpy as np
 from pydantic import model_validator
 
-from hookean.compiled.dispatch import keep, rows
+from hookean.compiled.dispatch import compiled, keep, rows
 from hookean.compiled.marks import device
 from hookean.errors import InputError
 from hookean.forces.base import Block, Floats, Ints, Places, lengths
+from hookean.forces.clearance import bounds, kept, middles
 from hookean.forces.enclosed import unclosed, volumes
-from hookean.forces.pull_to_mesh import DEEPEST, EDGE, FACE, WIDTH, ToMesh, closest, tree
+from hookean.forces.pull_to_mesh import DEEPEST, EDGE, FACE, WIDTH, ToMesh, box_distance, closest, tree
 from hookean.values import near
 from hookean.values.columns import NonNegatives, fault
 from hookean.values.fields import Field
 
-STRENGTH, RADIUS, SIDE, NORMAL, TREE, NORMALS = 0, 1, 2, 3, 6, 8  # columns of the parameters
+STRENGTH, RADIUS, SIDE, NORMAL, TREE, NORMALS, GRID = 0, 1, 2, 3, 6, 8, 10  # columns of the parameters
 PARTS = 21  # columns of the table of normals: x y z at three corners, on three edges, on the face
 NEAREST = 1e-12  # part of its coordinates: what is nearer to an edge or corner has no direction from it
+CLOSE = 1e-9  # part of the width of a grid: bounds of distances are that much wider
 MERGED = 1e-9  # part of a mesh's size within which vertices are one
 AXIS, AT, OUT, PLACE = 5, 6, 7, 8  # rows of the room of a kernel, after those of `closest`
 ROOM = 9
@@ -38,7 +40,15 @@ def press(x, a, parameters, e, room, stack) -> Any:  # type: ignore[no-untyped-d
         p[c] = x[a, c] - height * parameters[e, NORMAL + c]
         plane += abs(parameters[e, NORMAL + c])
     table = rows(parameters[e, TREE], parameters[e, TREE + 1], WIDTH)
-    part, number = closest(table, p, at, room[AXIS], room, stack)
+    side, most = parameters[e, SIDE], np.inf
+    if parameters[e, GRID] != 0.0:
+        distance, away, width = bounds(parameters[e, GRID], p)
+        least, most = side * distance - away, (abs(distance) + away) * (abs(distance) + away)
+        if side > 0.0:
+            least = max(least, np.sqrt(box_distance(table, 0, p)) - CLOSE * width)
+        if least > parameters[e, RADIUS]:
+            return parameters[e, RADIUS] - least, 0.0, FACE
+    part, number = closest(table, p, at, room[AXIS], room, stack, most)
     normals = rows(parameters[e, NORMALS], parameters[e, NORMALS + 1], PARTS)
     along, square, size = 0.0, 0.0, 0.0
     for c in range(3):
@@ -46,15 +56,23 @@ def press(x, a, parameters, e, room, stack) -> Any:  # type: ignore[no-untyped-d
         along += (p[c] - at[c]) * out[c]
         square += (p[c] - at[c]) * (p[c] - at[c])
         size += abs(p[c])
-    apart, side = np.sqrt(square), parameters[e, SIDE]
+    apart = np.sqrt(square)
     round_it = part < EDGE or (part < FACE and plane == 0.0)
     if not round_it or not apart > NEAREST * size:
         return parameters[e, RADIUS] - side * along, 0.0, part
-    away = 1.0 if along >= 0.0 else -1.0
+    sign = 1.0 if along >= 0.0 else -1.0
     for c in range(3):
-        out[c] = away * (p[c] - at[c]) / apart
-    overlap = parameters[e, RADIUS] - side * away * apart
-    return overlap, -overlap * side * away / apart, part
+        out[c] = sign * (p[c] - at[c]) / apart
+    overlap = parameters[e, RADIUS] - side * sign * apart
+    return overlap, -overlap * side * sign / apart, part
+
+
+def heights(x, parameters, found):  # type: ignore[no-untyped-def]
+    """Signed distances of places from the solid of one row of parameters, with radius 0 and side 1."""
+    room = np.zeros((ROOM, 3))
+    stack = np.zeros(2 * DEEPEST, np.int64)
+    for a in range(x.shape[0]):
+        found[a] = -press(x, a, parameters, 0, room, stack)[0]
 
 
 def solid_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-untyped-def]
@@ -155,14 +173,20 @@ def contacts(
     """The block of contacts with a solid of triangles (m, 3, 3) and normals (m, 21) of their parts; with a unit
     `normal`, that of the plane of a curve, whose pieces repeat their last corner."""
     each = np.ones((len(index), 1))
+    address, size = tree(corners)
+    shared = [*np.asarray(normal, np.float64), address, float(size), keep(normals), float(len(normals))]
+    head, places = middles(corners, len(index))
+    found = np.empty(len(places))
+    compiled(heights)(places, np.array([[0.0, 0.0, 1.0, *shared, 0.0]]), found)
     return Block.of(
         index,
         strength=strength,
         radius=radius,
         inside=-1.0 if inside else 1.0,
-        normal=each * np.asarray(normal, np.float64),
-        tree=each * tree(corners),
-        normals=each * [keep(normals), float(len(normals))],
+        normal=each * shared[:3],
+        tree=each * shared[3:5],
+        normals=each * shared[5:],
+        grid=kept(head, found),
     )
 
 

@@ -101,13 +101,14 @@ def box_distance(t, row, p) -> Any:  # type: ignore[no-untyped-def]
 
 
 @device
-def closest(t, p, at, axis, room, stack) -> Any:  # type: ignore[no-untyped-def]
+def closest(t, p, at, axis, room, stack, most) -> Any:  # type: ignore[no-untyped-def]
     # closest point `at` to p of the triangles in a tree's table; equal distances: the triangle given first.
     # Returns which part of which triangle is closest, as `on_triangle`. `room` (4, 3) and `stack` are to work in.
+    # `most`: more than the squared distance, where that is known.
     found = room[0]
     found_axis = room[1]
     stack[0] = 0
-    best = np.inf
+    best = most
     first = np.inf
     part = CORNER
     top = 1
@@ -151,7 +152,7 @@ def pull_kernel(x, v, indices, parameters, memory, f, w):  # type: ignore[no-unt
         strength = parameters[e, 0]
         if strength == 0.0:
             continue
-        closest(rows(parameters[e, 1], parameters[e, 2], WIDTH), x[a], at, axis, room, stack)
+        closest(rows(parameters[e, 1], parameters[e, 2], WIDTH), x[a], at, axis, room, stack, np.inf)
         w[a] += strength
         for c in range(3):
             d = at[c] - x[a, c]
@@ -167,7 +168,7 @@ def pull_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no-unt
     axis = room[5]
     for e in range(indices.shape[0]):
         tree_rows = rows(parameters[e, 1], parameters[e, 2], WIDTH)
-        part, _ = closest(tree_rows, x[indices[e, 0]], at, axis, room, stack)
+        part, _ = closest(tree_rows, x[indices[e, 0]], at, axis, room, stack, np.inf)
         for i in range(3):
             for j in range(3):
                 entry = axis[i] * axis[j]

@@ -194,7 +194,7 @@ def nearest_place(parameters: Any, e: Any, x: Any, b: Any, g: Any, h: Any, room:
     s = rows(parameters[e, TABLE], parameters[e, TABLE + 1], 1)
     table = rows(parameters[e, TREE], parameters[e, TREE + 1], WIDTH)
     t, piece, held, then = room[AT], room[AT + 1], room[AT + 2], room[AT + 3]
-    _, number = closest(table, x, room[4], room[5], room, stack)
+    _, number = closest(table, x, room[4], room[5], room, stack, np.inf)
     across = int(s[ACROSS, 0])
     for way in range(2):
         cell = number // 2 // across if way == 0 else number // 2 % across

@@ -18,10 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.compiled import dispatch
-from hookean.forces import groups
 from hookean.linear.block_kernels import multiply
 from hookean.linear.sparse_factors import Factors
-from hookean.system.balance import Balance, balance, extents
+from hookean.system.balance import Balance, balance, wholes
 
 if TYPE_CHECKING:
     from hookean.linear.tangent import Tangent
@@ -82,7 +81,7 @@ class Scaled:
         dofs = np.flatnonzero(free.ravel() > 0.0)
         w = found.stiffness
         w = np.maximum(w, 1e-9 * w.max()) if w.max() > 0.0 else np.ones_like(w)
-        apart = _extents(system, state) * w
+        apart = wholes(system, state) * w
         turning = np.abs(found.forces).max(axis=1) / np.where(apart > 0.0, apart, np.inf)
         scale = 1.0 / np.sqrt(np.repeat(w, 3)[dofs])
         left = found.forces if axes is None else np.einsum("nij,nj->ni", axes, found.forces)
@@ -119,16 +118,6 @@ class Scaled:
             size = (own**2).sum(axis=2) * known + (whole**2).sum(axis=(2, 3)) * INEXACT**2
             noise += float((sizes * size).sum(axis=1).max())
         return total, noise
-
-
-def _extents(system: System, state: State) -> Floats:
-    """The largest extent along an axis (n,) [length] of the elements at each particle, and of the groups of these."""
-    extent = extents(system, state)
-    for group in system.groups:
-        if issubclass(group.cls, groups.Grouped) and len(group.block.indices):
-            wide = groups.extents(group.block, state.x)
-            np.maximum.at(extent, group.block.indices, wide[:, None])
-    return extent
 
 
 def _blurred(system: System, state: State, w: Floats) -> float:

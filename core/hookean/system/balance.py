@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from hookean.compiled import dispatch
 from hookean.compiled.marks import device
+from hookean.forces import groups
 from hookean.forces.base import lengths
 from hookean.system.components import Components
 from hookean.system.group import Group
@@ -186,6 +187,16 @@ def extents(system: System, state: State) -> Floats:
     return extent
 
 
+def wholes(system: System, state: State) -> Floats:
+    """The largest extent along an axis (n,) [length] of the elements at each particle, and of the groups of these."""
+    extent = extents(system, state)
+    for group in system.groups:
+        if issubclass(group.cls, groups.Grouped) and len(group.block.indices):
+            wide = groups.extents(group.block, state.x)
+            np.maximum.at(extent, group.block.indices, wide[:, None])
+    return extent
+
+
 def extent_of(indices, wide, x, extent):  # type: ignore[no-untyped-def]
     """The largest extent along an axis of the elements at each particle, the first `wide` indices of each, and slot."""
     for e in range(indices.shape[0]):
@@ -308,7 +319,7 @@ def _element_scales(system: System, state: State, parts: Components, w: Floats, 
     scales = np.maximum(now, 1e-3 * state.force_scale)
     if scales.min() >= UNSTRAINED * 2.0 * (w * reach).max():  # no element is larger than twice that
         return np.asarray(scales)
-    stiff = w * extents(system, state)  # what particles resist to strains of 1 [force]
+    stiff = w * wholes(system, state)  # what particles resist to strains of 1 [force]
     if scales.min() < UNSTRAINED * stiff.max():
         own = np.zeros((k, 2))
         dispatch.compiled(tally)(np.arange(len(stiff))[:, None], stiff, parts.label, own)

@@ -62,7 +62,7 @@ def cautions(system: System) -> list[str]:
                 warnings.append(_nowhere(system, part.number))
                 continue
             alike, short = dispatch.compiled(coincide)(system.x, index, _rests(block), touched, same, closed)
-            if alike:
+            if alike and not part.force.pointed:
                 warnings.append(
                     f"/forces/{part.number}: {alike} of {len(same)} elements start and end at one particle (first: "
                     f"element {int(np.argmax(same))}) and have no length; lengthen them or lower weld_tolerance"

@@ -176,7 +176,7 @@ def _domain(value: Any) -> Any:
 
 
 def _mesh(value: Any) -> Any:
-    """A mesh, or that of the faces of a Brep or surface, as Mesh Brep makes it, or of a closed polyline."""
+    """A mesh, or that of the faces of a Brep or surface, of as few as a solid needs, or of a closed polyline."""
     if isinstance(value, rhino3dm.Mesh):
         return value
     if isinstance(value, rhino3dm.Curve):
@@ -188,9 +188,9 @@ def _mesh(value: Any) -> Any:
     faces = _brep(value)
     if faces is None:
         return None
-    from hookean_canvas.run.natives.meshes_made import mesh_brep
+    from hookean_canvas.run.natives.meshes_made import QUADS, meshed
 
-    return mesh_brep(faces, None)
+    return meshed(faces, 1 if getattr(faces, "IsSolid", False) else QUADS)
 
 
 def _halfedge(value: Any) -> Any:

@@ -17,7 +17,9 @@ from hookean_canvas.run.natives.meshes import sides
 from hookean_canvas.run.natives.shapes import Array, Faces
 from hookean_canvas.run.rhino import rhino3dm
 
-QUADS = 10  # along each side of a face of a Brep
+QUADS = 10  # along each side of a face of a Brep, at least
+TURN = math.pi / 20.0  # by which the normals of a curved face differ from one row of quads to the next, at most
+LOOKED_AT = 13  # normals along each side
 
 
 @native("8adbf481-7589-4a40-b490-006531ea001d", "Mesh Plane", "MPlane",
@@ -90,21 +92,26 @@ def mesh_sphere(frame: Any, radius: float, nu: int, nv: int) -> Any:
 
 @native("60e7defa-8b21-4ee1-99aa-a9223d6134ff", "Mesh Brep", "Mesh",
         "Brep (B): faces; Settings (S): any optional", "Mesh (M)",
-        remark=f"{QUADS} by {QUADS} quads on each face, or as many triangles where it is cut, whatever the settings; "
-               "Rhino makes another mesh")  # fmt: skip
+        remark=f"{QUADS} by {QUADS} quads on each face, more where it turns by more than 90 degrees, or as many "
+               "triangles where it is cut, whatever the settings; Rhino makes another mesh")  # fmt: skip
 def mesh_brep(brep: Any, settings: Any) -> Any:
     """The faces of a Brep as quads; trimmed ones by the mesh that the file has for them, or, if flat, as triangles.
 
     A mesh stays as it is.
     """
+    return meshed(brep, QUADS)
+
+
+def meshed(brep: Any, least: int) -> Any:
+    """The mesh of a Brep with at least so many quads along each side of a face."""
     if isinstance(brep, rhino3dm.Mesh):
         return brep
     try:
-        made = mesh_faces(brep, *_counts(brep))
+        made = mesh_faces(brep, *_counts(brep, least))
     except InputError as error:
         if not isinstance(brep, rhino3dm.Brep) or "trimmed" not in str(error):
             raise Unfit(str(error)) from None
-        return flat_mesh(brep, QUADS)
+        return flat_mesh(brep, least)
     return shapes.mesh(made.vertices, made.faces)
 
 
@@ -118,14 +125,28 @@ def mesh_surface(surface: Any, nu: int, nv: int, overhang: bool, equalize: bool)
     return _of_core(lambda: core_mesh_surface(surface, nu, nv))
 
 
-def _counts(brep: Any) -> tuple[int, int]:
-    """Quads each way: on one surface of straight pieces so many that each corner is one of theirs."""
-    face = brep.Faces[0] if isinstance(brep, rhino3dm.Brep) and len(brep.Faces) == 1 else brep
-    if not isinstance(face, rhino3dm.Surface):
-        return QUADS, QUADS
-    spans = [face.SpanCount(k) if face.Degree(k) == 1 else 1 for k in (0, 1)]
-    u, v = (one * max(math.ceil(QUADS / one), 1) for one in spans)
+def _counts(brep: Any, least: int) -> tuple[int, int]:
+    """Quads each way: so many that normals turn little from one to the next, and that each corner of a surface of
+    straight pieces is one of theirs."""
+    faces = [brep.Faces[i] for i in range(len(brep.Faces))] if isinstance(brep, rhino3dm.Brep) else [brep]
+    faces = [face for face in faces if isinstance(face, rhino3dm.Surface)]
+    spans = [faces[0].SpanCount(k) if faces[0].Degree(k) == 1 else 1 for k in (0, 1)] if len(faces) == 1 else [1, 1]
+    turns = [max((_turn(face, k) for face in faces), default=0.0) for k in (0, 1)]
+    counts = [max(least, math.ceil(turn / TURN - 1e-9)) for turn in turns]
+    u, v = (one * max(math.ceil(count / one), 1) for one, count in zip(spans, counts, strict=True))
     return (u, v) if u * v <= MOST_QUADS else (QUADS, QUADS)
+
+
+def _turn(face: Any, way: int) -> float:
+    """By what angle [rad] the normal of a face turns along a direction, at most; straight pieces turn at their ends."""
+    if face.Degree(way) == 1:
+        return 0.0
+    steps = [np.linspace(face.Domain(k).T0, face.Domain(k).T1, LOOKED_AT) for k in (0, 1)]
+    places = [[face.NormalAt(u, v) for v in steps[1]] for u in steps[0]]
+    normals = np.array([[shapes.xyz(normal) for normal in row] for row in places])
+    normals = normals.swapaxes(0, way)
+    cosines = (normals[1:] * normals[:-1]).sum(axis=-1)
+    return float(np.arccos(np.clip(cosines, -1.0, 1.0)).sum(axis=0).max())
 
 
 MOST_QUADS = 10_000
