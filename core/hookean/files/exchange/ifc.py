@@ -142,11 +142,11 @@ class _Writer:
     def _join(self, joint: dict[str, Any], beams: Beams | None, row: int, end: int, vertex: Any) -> None:
         """The end of a member at its connection; of a beam with the rotations that are free, and its eccentricity."""
         make, kind = self.file.create_entity, "IfcRelConnectsStructuralMember"
-        if beams is not None and beams.releases[end]:
+        if beams is not None and beams.releases[row, end]:
             x, _, z = beams.axes[row]
             own = make("IfcAxis2Placement3D", Location=make("IfcCartesianPoint", Coordinates=(0.0, 0.0, 0.0)),
                        Axis=self._direction(z), RefDirection=self._direction(x))  # fmt: skip
-            fixed = [True] * 3 + [axis not in beams.releases[end] for axis in "xyz"]
+            fixed = [True] * 3 + [axis not in beams.releases[row, end] for axis in "xyz"]
             free = make("IfcBoundaryNodeCondition", "release", *(make("IfcBoolean", axis) for axis in fixed))
             joint = {**joint, "AppliedCondition": free, "ConditionCoordinateSystem": own}
         if beams is not None and beams.offsets[row, end].any():
