@@ -103,13 +103,12 @@ class Result:
         lines = [f"{len(self.particles)} particles"]
         for entry in self.forces:
             title = f"{entry['name']} ({entry['kind']})" if entry["name"] else entry["kind"]
-            column = next((c for c in ("force", "moment") if np.size(entry.get(c, ()))), None)
-            if column is None:
+            said = [self._range(entry, c) for c in ("force", "moment", "warp", "weft") if np.size(entry.get(c, ()))]
+            if not said:
                 continue
-            values = np.asarray(entry[column])
-            sizes = np.linalg.norm(values, axis=1) if values.ndim == 2 else values
-            unit = self.units.of(KINDS[entry["kind"]].outputs[column])
-            line = f"{title}: {len(sizes)} elements, {column} {sizes.min():.4g} to {sizes.max():.4g} {unit}"
+            line = f"{title}: {len(entry['particles'])} elements, {', '.join(said if 'warp' in entry else said[:1])}"
+            ends = [np.abs(entry[c]).max() for c in ("My0", "Mz0", "My1", "Mz1") if np.size(entry.get(c, ()))]
+            line += f", moments up to {max(ends):.4g} {self.units.of('moment')}" if ends else ""
             used = f", utilisation up to {100.0 * np.max(entry[NAME]):.4g} %" if np.size(entry.get(NAME, ())) else ""
             lines.append(line + used)
         reactions = np.asarray(self.reactions["force"]).reshape(-1, 3)
@@ -120,6 +119,13 @@ class Result:
             unit = self.units.force
             lines.append(f"{len(reactions)} reactions: largest {largest:.4g} {unit}, together ({total}) {unit}")
         return lines
+
+    def _range(self, entry: dict[str, Any], column: str) -> str:
+        """The smallest and the largest value of a column."""
+        values = np.asarray(entry[column])
+        sizes = np.linalg.norm(values, axis=1) if values.ndim == 2 else values
+        unit = self.units.of(KINDS[entry["kind"]].outputs[column])
+        return f"{column} {sizes.min():.4g} to {sizes.max():.4g} {unit}"
 
     def __repr__(self) -> str:
         return "\n".join([f"Result: {self.status}. {self.message}", *(f"  {line}" for line in self.summary())])
