@@ -118,19 +118,53 @@ def test_each_beam_has_hinges_of_its_own() -> None:
         frame(LINE, [[0, 1], [1, 2]], clamp(0), release_start=["y", "q"])
 
 
-def test_hinged_ends_leave_rotations_free() -> None:
-    """A tripod of beams that are hinged all round: all twelve rotations are free, which the message names; held by an
-    anchor of rotations alone, it is the truss, N = -P / 2 * 2^0.5 in the legs against each other, and is stable."""
-    x, hinged = [[-1, 0, 0], [0, 0, 1], [1, 0, 0], [0, 1, 0]], {"release_start": "xyz", "release_end": "xyz"}
-    push = {"kind": "unary", "particles": [1], "vector": [0, 0, -1e-3]}
-    legs, foot = [[0, 1], [2, 1], [3, 1]], {"particles": [0, 2, 3]}
-    loose = hookean.relax(frame(x, legs, foot, more=[push], **hinged))
-    assert loose.stability == "mechanism" and loose.soft_modes == 12
-    assert "turns most: hold it by the rotations of an anchor" in loose.message
-    turning = {"particles": range(4), "axes": "", "rotations": "xyz"}
-    held = hookean.relax(frame(x, legs, foot, turning, more=[push], **hinged))
-    assert held.stability == "stable"
-    np.testing.assert_allclose(held.force("beam")["force"][:2], -1e-3 * np.sqrt(0.5), rtol=1e-4)
+PUSH = {"kind": "unary", "name": "push", "particles": [1], "vector": [0, 0, -1e-3]}
+TRIPOD, LEGS = [[-1, 0, 0], [0, 0, 1], [1, 0, 0], [0, 1, 0]], [[0, 1], [2, 1], [3, 1]]
+
+
+@pytest.mark.parametrize(("hinged", "turns"), [("yz", 9), ("xyz", 12)])
+def test_a_truss_of_hinged_beams_is_stable(hinged: str, turns: int) -> None:
+    """A tripod of beams that are hinged all round is the truss, N = -P / 2 * 2^0.5 in the legs against each other, and
+    stable: its free turns move nothing. So it is with the turns held; and where a beam ends beside its joint, which
+    swings it, the message names the joint."""
+    ends = {"release_start": hinged, "release_end": hinged}
+    foot, turning = {"particles": [0, 2, 3]}, {"particles": range(4), "axes": "", "rotations": "xyz"}
+    loose = hookean.relax(frame(TRIPOD, LEGS, foot, more=[PUSH], **ends))
+    assert loose.stability == "stable" and loose.soft_modes == turns and "mechanism" not in loose.message
+    assert f"{turns} turns of hinged joints" in loose.stability_reason
+    assert loose.position_error is not None and loose.position_error < 1e-6
+    held = hookean.relax(frame(TRIPOD, LEGS, foot, turning, more=[PUSH], **ends))
+    assert held.stability == "stable" and held.soft_modes is None
+    for found in (loose, held):
+        np.testing.assert_allclose(found.force("beam")["force"][:2], -1e-3 * np.sqrt(0.5), rtol=1e-4)
+    beside = hookean.relax(frame(TRIPOD, LEGS, foot, **ends, offset_start=[0.0, 0.1, 0.0]))
+    assert beside.stability == "mechanism"
+    assert "turns most: hold it by the rotations of an anchor" in beside.message
+
+
+@pytest.mark.parametrize("hinged", ["yz", "xyz"])
+def test_hinged_beams_buckle_snap_and_vibrate_as_bars(hinged: str) -> None:
+    """Free turns of joints do not keep a truss from its factors: those of springs with its EA, whose unknowns are
+    fewer, to the rounding of a tangent. They have no frequency; joints that turn against torsion of struts have one."""
+    beams = {"kind": "beam", **SLENDER, "release_start": hinged, "release_end": hinged}
+    kinds = [beams, {"kind": "springs", "axial_stiffness": SLENDER["E"] * SLENDER["A"]}]
+
+    def made(x: Any, pairs: Any, load: Any, *held: Spec) -> list[Scene]:
+        spec = {"particles": x, "anchors": held, "settings": {"tolerance": 1e-11}}
+        return [Scene.read({**spec, "forces": [{**kind, "particles": pairs}, load]}) for kind in kinds]
+
+    tripods = made(TRIPOD, LEGS, PUSH, {"particles": [0, 2, 3]})
+    one, two = (hookean.buckling(scene, count=1).factors for scene in tripods)
+    np.testing.assert_allclose(one, two, rtol=1e-9)
+    if hinged == "xyz":
+        one, two = (hookean.frequencies(scene, count=3).frequencies for scene in tripods)
+        np.testing.assert_allclose(one, two, rtol=1e-9)
+    push, held = {**PUSH, "vector": [0, 0, -100]}, [{"particles": [0, 2]}, {"particles": [1], "axes": "y"}]
+    shallow = made([[-1, 0, 0], [0, 0, 0.3], [1, 0, 0]], [[0, 1], [1, 2]], push, *held)
+    paths = [hookean.load_path(scene, steps=60, increment=0.2) for scene in shallow]
+    one, two = ([point.factor for point in path.critical_points] for path in paths)
+    assert len(one) == 2
+    np.testing.assert_allclose(one, two, rtol=1e-9)
 
 
 @pytest.mark.parametrize("seed", range(12))

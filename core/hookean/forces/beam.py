@@ -137,9 +137,9 @@ class Beam(Force):
     drawn length times 1 + expansion x temperature; the section stays.
 
     The section's axis x runs along the beam, z is in the plane of x and `normal`, and y = z cross x. Rows that are
-    straight without stress are bent in, and twisted in where the normals turn along the row. A particle whose beams are
-    all hinged turns freely about their axes: hold it by the `rotations` of an anchor with `axes` "". In motion a
-    particle has an isotropic inertia, that of a rod of its mass and of the mean length of the beams there. Sources:
+    straight without stress are bent in, and twisted in where the normals turn along the row. Turns
+    of particles whose beams are all hinged move nothing, and count as no mechanism. In motion a particle has an
+    isotropic inertia, that of a rod of its mass and of the mean length of the beams there. Sources:
     Oran, "Tangent stiffness in space frames", 1973 (angles to the chord, and shortening); Bergou et al., "Discrete
     elastic rods", 2008 (twist); Przemieniecki, Theory of matrix structural analysis, 1968, 5.6 (shear).
     """

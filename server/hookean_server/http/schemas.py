@@ -181,7 +181,7 @@ SCHEMAS: dict[str, dict[str, Any]] = {
             "additionalProperties": {"type": "array"},
         },
         stability={"enum": ["stable", "unstable", "mechanism", "unknown"]},
-        stability_reason={"type": "string", "description": "Why it is unstable or unknown; empty if stable"},
+        stability_reason={"type": "string", "description": "Why it is unstable or unknown, or joints that turn freely"},
         soft_particle={"type": ["integer", "null"], "description": "The particle that moves most in the softest mode"},
         soft_modes={
             "type": ["integer", "null"],
