@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hookean.running.utilisation import NAME, dimensions
+from hookean.running.utilisation import NAME, STRESS, dimensions
 from hookean.values.units import Units
 
 Floats = NDArray[np.float64]
@@ -23,7 +23,7 @@ def first_largest(values: Floats) -> int:
     return int(np.argmax(values >= largest - ALIKE * abs(largest))) if len(values) else 0
 
 
-SHOWN = ("force", "moment", "warp", "weft", NAME)
+SHOWN = ("force", "moment", "warp", "weft", STRESS, NAME)
 """Columns of forces that a summary has."""
 
 

@@ -14,7 +14,7 @@ from hookean.errors import InputError
 from hookean.forces import KINDS
 from hookean.forces.base import Rider
 from hookean.running.loads import applied
-from hookean.running.utilisation import NAME, dimensions, utilisation
+from hookean.running.utilisation import NAME, STRESS, dimensions, stress, utilisation
 from hookean.scene.report import Report
 from hookean.scene.scene import Scene
 from hookean.stability.equilibrium import Equilibrium, Stability, unknown
@@ -337,9 +337,10 @@ def _measures(system: System, state: State, acting: list[Floats]) -> list[dict[s
                 continue
             columns = part.force.measure(block, state.x, forces[part.rows])
             entries[part.number].update(particles=group.particles[part.rows], **columns)
-            used = utilisation(part.force, system.places, columns)
-            if used is not None:
-                entries[part.number][NAME] = used
+            for name, rule in ((STRESS, stress), (NAME, utilisation)):
+                found = rule(part.force, system.places, columns)
+                if found is not None:
+                    entries[part.number][name] = found
     return entries
 
 
