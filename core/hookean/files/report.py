@@ -114,6 +114,7 @@ def _form(scene: Scene, form: Result, pictures: bool) -> Iterator[str]:
     if pictures:
         yield _picture(form, "Form and forces in it")
     yield from _loads(form, "Loads that act on the form")
+    yield from _carried(form)
     yield _table(("force", "column", "smallest", "largest", "unit"), _ranges(form))
 
 
@@ -145,6 +146,28 @@ def _loads(result: Result, title: str) -> Iterator[str]:
         for row, moment in zip(rows, [*map(_vector, found["moment"]), ""], strict=True):
             row.append(moment)
     yield _table(heads, rows)
+
+
+def _carried(result: Result) -> Iterator[str]:
+    """What each support carries, the largest first."""
+    found, units = result.reactions, result.units
+    force = np.asarray(found["force"], dtype=float).reshape(-1, 3)
+    if not len(force):
+        return
+    yield "<h3>Reactions</h3>"
+    yield f"<p>Reactions together: {_vector(force.sum(axis=0))} {units.force}.</p>"
+    heads = ["support", "particle", f"x, y, z [{units.length}]", f"reaction x, y, z [{units.force}]"]
+    columns = [force]
+    if len(result.rotations["particles"]):
+        heads.append(f"moment x, y, z [{units.of('force length')}]")
+        columns.append(np.asarray(found["moment"], dtype=float).reshape(-1, 3))
+    rows = []
+    for i in np.argsort(-np.linalg.norm(force, axis=1), kind="stable")[:MOST].tolist():
+        at = int(found["particles"][i])
+        rows.append((found["names"][i], at, _vector(result.particles[at]), *(_vector(column[i]) for column in columns)))
+    yield _table(heads, rows)
+    if len(force) > MOST:
+        yield f"<p>The {MOST} largest of {len(force)} are shown.</p>"
 
 
 def _cases(scene: Scene, cases: LoadCases) -> Iterator[str]:
@@ -206,7 +229,7 @@ def _reactions(found: Envelope, form: Result) -> Iterator[str]:
     if not len(found.particles):
         return
     units = found.units
-    yield "<h2>Reactions</h2>"
+    yield "<h2>Largest reactions of all cases</h2>"
     order = np.argsort(-found.reaction.largest, kind="stable")[:MOST]
     heads = ["support", f"x, y, z [{units.length}]", f"largest reaction [{units.force}]", "in case"]
     kinds = [found.reaction]
@@ -232,8 +255,7 @@ def _case(case: CaseResult, exceeded: Sequence[str] | None, pictures: bool) -> I
     if pictures:
         yield _picture(case.result, f"Shape and forces under {case.name}")
     yield from _loads(case.result, "Loads")
-    total = np.asarray(case.result.reactions["force"]).reshape(-1, 3).sum(axis=0)
-    yield f"<p>Reactions together: {_vector(total)} {case.result.units.force}.</p>"
+    yield from _carried(case.result)
     yield _table(("force", "column", "smallest", "largest", "unit"), _ranges(case.result))
     if exceeded is not None:
         yield from _checks(exceeded)
