@@ -151,16 +151,16 @@ def _loads(result: Result, title: str) -> Iterator[str]:
 def _carried(result: Result) -> Iterator[str]:
     """What each support carries, the largest first."""
     found, units = result.reactions, result.units
-    force = np.asarray(found["force"], dtype=float).reshape(-1, 3)
+    force = _sizeable(found["force"])
     if not len(force):
         return
     yield "<h3>Reactions</h3>"
-    yield f"<p>Reactions together: {_vector(force.sum(axis=0))} {units.force}.</p>"
+    yield f"<p>Reactions together: {_vector(_sizeable(force.sum(axis=0))[0])} {units.force}.</p>"
     heads = ["support", "particle", f"x, y, z [{units.length}]", f"reaction x, y, z [{units.force}]"]
     columns = [force]
     if len(result.rotations["particles"]):
         heads.append(f"moment x, y, z [{units.of('force length')}]")
-        columns.append(np.asarray(found["moment"], dtype=float).reshape(-1, 3))
+        columns.append(_sizeable(found["moment"]))
     rows = []
     for i in np.argsort(-np.linalg.norm(force, axis=1), kind="stable")[:MOST].tolist():
         at = int(found["particles"][i])
@@ -168,6 +168,12 @@ def _carried(result: Result) -> Iterator[str]:
     yield _table(heads, rows)
     if len(force) > MOST:
         yield f"<p>The {MOST} largest of {len(force)} are shown.</p>"
+
+
+def _sizeable(vectors: Any) -> np.ndarray:
+    """Vectors (n, 3) without parts that are less than a millionth of the largest, which are what is out of balance."""
+    rows = np.asarray(vectors, dtype=float).reshape(-1, 3)
+    return np.where(np.abs(rows) < 1e-6 * np.abs(rows).max(initial=0.0), 0.0, rows)
 
 
 def _cases(scene: Scene, cases: LoadCases) -> Iterator[str]:
