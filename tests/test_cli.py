@@ -451,10 +451,34 @@ def test_report_writes_one_page(folder: Path) -> None:
     assert run("report", "cable.json").exit_code == 0
     text = (folder / "cable.report.html").read_text()
     assert "<h1>cable</h1>" in text and "Case snow" in text
-    assert run("report", "cable.json", "-o", "out/", "--title", "My roof", "--check", "limits.toml", "-q").output == ""
+    found = run("report", "cable.json", "-o", "out/", "--title", "My roof", "--check", "limits.toml", "-q")
+    assert found.exit_code == 1 and found.stdout == ""
+    assert found.stderr.startswith("hookean: cable.json: limit exceeded: snow: ") and found.stderr.count("\n") == 1
     text = (folder / "out" / "cable.html").read_text()
     assert "<h1>My roof</h1>" in text and "exceeds the limit" in text
-    assert run("report", "cable.json", "-o", "cable.pdf").exit_code == 2
+    (folder / "limits.toml").write_text("max_displacement = 1")
+    assert run("report", "cable.json", "--check", "limits.toml").exit_code == 0
+    (folder / "limits.toml").write_text("[forces.rope]\nmax_force = 1")
+    assert run("report", "cable.json", "--check", "limits.toml").exit_code == 2
+
+
+def test_a_report_of_a_case_without_equilibrium_exits_like_relax(folder: Path) -> None:
+    """Two iterations are enough where nothing moves, and too few under wind; the report is written."""
+    scene = {
+        "particles": [[0, 0, 0], [1, 0, 0]],
+        "forces": [
+            {"kind": "springs", "name": "cable", "particles": [[0, 1]], "stiffness": 100},
+            {"kind": "unary", "name": "wind", "particles": [1], "vector": [0, 10, 0]},
+        ],
+        "anchors": [{"particles": [0]}],
+        "load_cases": {"calm": {"forces": ["wind"], "factor": 0}, "storm": {"forces": ["wind"]}},
+        "stages": {"form": "drawn"},
+        "settings": {"max_iterations": 2},
+    }
+    (folder / "cable.json").write_text(json.dumps(scene))
+    found = run("report", "cable.json")
+    assert found.exit_code == 3 and (folder / "cable.report.html").exists()
+    assert found.stderr.startswith("hookean: cable.json: storm: Not in equilibrium") and "calm" not in found.stderr
 
 
 def test_version_forces_and_help() -> None:

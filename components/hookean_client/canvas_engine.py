@@ -282,10 +282,12 @@ def _results(player, places):
 def _reactions(player, frame):
     """The reaction of each anchor, None where it met no particle, in the tree of the anchors."""
     told = player.state["reactions"]
-    forces = told["force"]
+    particles, names, forces = (
+        [value for value, exact in zip(told[key], told["exact"]) if exact] for key in ("particles", "names", "force")
+    )
     if not player.exact and len(frame["reactions"]) == 3 * len(forces):
         forces = [frame["reactions"][3 * i : 3 * i + 3] for i in range(len(forces))]
-    parts = _parts(player, dict(zip(told["particles"], forces)), dict(zip(told["names"], forces)))
+    parts = _parts(player, dict(zip(particles, forces)), dict(zip(names, forces)))
     order, branches = [], {}
     for anchor in player.kept.anchors:
         if anchor["branch"] not in branches:

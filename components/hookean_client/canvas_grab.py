@@ -77,7 +77,8 @@ class Hand(object):
         frame = player.frame() if player.kept is not None and not player.ended else None
         if self._wanted is None or not frame or not way or player.kept.reset or player.kept.paused:
             return False
-        held = set((player.state or {}).get("reactions", {}).get("particles", ())) - self._dragged
+        told = (player.state or {}).get("reactions", {})
+        held = {p for p, exact in zip(told.get("particles", ()), told.get("exact", ())) if exact} - self._dragged
         flat, best, least = frame["particles"], None, self._wanted["range"]
         for i in range(frame["n"]):
             apart = [flat[3 * i + c] - eye[c] for c in range(3)]

@@ -11,6 +11,7 @@ from .canvas_packed import packed
 PLACES = ("lines", "points", "mesh", "particles")
 EVERYWHERE = ("self_weight", "impulse")  # without a place they act on all particles
 SHARED = ("control_points", "charges", "charge", "corners", "image", "path")  # rows of numbers as text
+TEXTS = ("release_start", "release_end")  # of which each element may have its own
 WHOLE = ("sub_iterations", "max_iterations")
 SOLVERS = ("verlet", "yoshida", "momentum", "relaxation", "newton", "force_density")
 UNITS = ("length", "force", "time")
@@ -75,7 +76,7 @@ def _columns(kind, fields):
                 found[name] = [plain(item) for item in listed(value)]
             except Unfit as unfit:
                 raise Unfit("%s, %s: %s" % (kind, name, unfit))
-            if any(isinstance(one, (bool, str)) for one in found[name]):
+            if name not in TEXTS and any(isinstance(one, (bool, str)) for one in found[name]):
                 if any(one != found[name][0] for one in found[name]):
                     raise Unfit("%s, %s: several values are connected; it takes one for all" % (kind, name))
                 found[name] = found[name][:1]

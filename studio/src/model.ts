@@ -94,7 +94,7 @@ export interface Result {
   message: string;
   particles: Point[];
   forces: ({ kind: string; name: string } & Record<string, unknown>)[];
-  reactions: { particles: number[]; force: Point[]; names: string[] };
+  reactions: { particles: number[]; force: Point[]; names: string[]; exact: boolean[] };
   energy: Record<string, number>;
   /** [-] */
   residual: number;

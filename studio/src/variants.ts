@@ -53,8 +53,9 @@ export function springColumn(forces: Record<string, unknown>[], topology: Topolo
 /** A variant as a frame that can be drawn. */
 export function still(one: Variant): Frame {
   const { result, summary } = one;
-  const { particles, force } = result.reactions;
-  const order = particles.map((_, i) => i).sort((a, b) => particles[a]! - particles[b]!);
+  const { particles, force, exact } = result.reactions;
+  const held = particles.map((_, i) => i).filter((i) => exact[i]); // as frames have them
+  const order = held.sort((a, b) => particles[a]! - particles[b]!);
   return {
     number: 0,
     revision: summary.revision,

@@ -68,6 +68,8 @@ def test_each_point_has_a_direction_of_its_own_and_no_value_is_dropped(rhino: An
     other, ghenv = told("Springs", "springs", lines=[line((0, 0, 0), (1, 0, 0))], sections=["free", "closed"])
     assert other == {}
     assert sentences(ghenv) == ["Springs, sections: several values are connected; it takes one for all."]
+    lines = [line((0, 0, 0), (1, 0, 0)), line((1, 0, 0), (2, 0, 0))]
+    assert told("Beam", "beam", lines=lines, release_start=["yz", ""])[0]["release_start"] == ["yz", ""]
 
 
 def test_meshes_come_back_as_they_were(rhino: Any) -> None:

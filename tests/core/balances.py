@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 
 from hookean.analysis import freezing
-from hookean.forces.base import Rider
 from hookean.running import run
 from hookean.running.result import Result
 from hookean.system.state import State
@@ -54,13 +53,11 @@ def outside(system: System, state: State, result: Result) -> tuple[np.ndarray, n
     forces = [hold["force"], touch["force"], loads["resultant"]]
     moments = [np.asarray(hold["moment"]).reshape(-1, 3), loads["moment"]]
     for group, memory in zip(system.groups, state.memory, strict=True):
-        if group.cls.role == "support" and group.cls.support is None:  # floors are among the contacts
+        # elastic supports are among the reactions, floors among the contacts
+        if group.cls.role == "support" and not group.cls.bearing and group.cls.support is None:
             own = system.element_forces(group, state, memory)
-            if issubclass(group.cls, Rider):
-                moments.append(own[:, 1] * group.block.parameters[:, :1])  # what slots feel, times their length
-            else:
-                at.append(state.x[group.block.indices.ravel()])
-                forces.append(own.reshape(-1, 3))
+            at.append(state.x[group.block.indices.ravel()])
+            forces.append(own.reshape(-1, 3))
     rows = [np.concatenate([np.asarray(part, float).reshape(-1, 3) for part in parts]) for parts in (at, forces)]
     return rows[0], rows[1], np.concatenate(moments)
 

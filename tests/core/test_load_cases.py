@@ -310,6 +310,29 @@ def test_the_envelope_has_the_moments_of_supports() -> None:
     assert any(line.startswith("reaction moment: largest 3") for line in found.summary())
 
 
+def test_summaries_have_the_bending_of_beams_and_the_stress_of_cloth() -> None:
+    """Of the cantilever above 3 at the clamp, under the load that lifts; of a square of cloth of stiffness 100 that is
+    pulled at rest by 2 and 1 per width: as it is made."""
+    section = {"E": 1e6, "G": 4e5, "A": 0.1, "Iy": 1e-3, "Iz": 1e-3, "J": 1e-3}
+    square = {"vertices": [[0, 5, 0], [1, 5, 0], [1, 6, 0], [0, 6, 0]], "faces": [[0, 1, 2, 3]]}
+    cloth = {"kind": "membrane", "name": "cloth", "mesh": "m", "warp_stiffness": 100, "warp": [1, 0, 0], "poisson": 0.0}
+    pushes = [{"kind": "unary", "name": n, "particles": [1], "vector": [0, 0, p]} for n, p in (("a", -2.0), ("b", 3.0))]
+    beam = {"kind": "beam", "name": "arm", "particles": [[0, 1]], **section}
+    scene = {
+        "particles": [[0, 0, 0], [1, 0, 0]],
+        "meshes": {"m": square},
+        "forces": [beam, {**cloth, "prestress": [2, 1, 0]}, *pushes],
+        "anchors": [{"particles": [0], "rotations": "xyz"}, {"points": square["vertices"]}],
+        "load_cases": {name: {"forces": [name]} for name in ("a", "b")},
+    }
+    found = hookean.load_cases(Scene.read(scene))
+    assert "arm moment My: largest 3 N m at element 0 in b" in found.envelope.summary()
+    assert "cloth warp: largest 2 N/m at element 0 in a" in found.envelope.summary()
+    said = found.cases["b"].result.summary()
+    assert any(line.startswith("arm (beam): ") and line.endswith("moments up to 3 N m") for line in said)
+    assert "cloth (membrane): 4 elements, warp 2 to 2 N/m, weft 1 to 1 N/m" in said
+
+
 def test_warmth_lengthens_a_cable() -> None:
     """Between its ends a cable of EA = 2000 keeps its length: T' = EA (l / (L0 (1 + a dT)) - 1), L0 = l EA / (EA + T).
     With snow on it, it is the cable of that tension at rest, and its sag has a closed form."""

@@ -137,8 +137,33 @@ def test_a_section_bends_about_both_axes(
         "settings": {"tolerance": 1e-10},
     })  # fmt: skip
     bent = 3.0 * by_y + 4.0 * by_z if corners else 5.0 * by_y
-    expected = (7.0 * by_force + bent) / 355e6
-    assert relax(scene).force("beam")["utilisation"] == pytest.approx([expected], rel=1e-5)
+    found = relax(scene)
+    assert found.force("beam")["stress"] == pytest.approx([7.0 * by_force + bent], rel=1e-5)
+    assert found.force("beam")["utilisation"] == pytest.approx(found.force("beam")["stress"] / 355e6, rel=1e-14)
+    assert list(found.table("beam")[0])[-2:] == ["stress [N/m^2]", "utilisation [-]"]
+
+
+def test_lines_with_a_section_have_their_stress_with_its_sign() -> None:
+    """A bar of 2 cm^2 under 3 kN, pulled and pushed: 15 MPa, of a material without strength; of EA it is not known."""
+    scene = {
+        "units": {"length": "cm", "force": "kN"},
+        "particles": [[0, 0, 0], [10, 0, 0], [20, 0, 0]],
+        "materials": {"m": {"E": 2e4}},
+        "sections": {"s": {"area": 2.0}},
+        "forces": [{"kind": "unary", "particles": [1], "vector": [6.0, 0, 0]}],
+        "anchors": [{"particles": [0, 2]}, {"particles": [1], "axes": "yz"}],
+        "settings": {"tolerance": 1e-11},
+    }
+    bar = {"kind": "springs", "name": "bar", "particles": [[0, 1], [1, 2]]}
+    made = Scene.read({**scene, "forces": [{**bar, "material": "m", "section": "s"}, *scene["forces"]]})
+    found = relax(made)
+    assert found.force("bar")["stress"] == pytest.approx([1.5, -1.5], rel=1e-9) and "utilisation" not in found.force(
+        "bar"
+    )
+    heads = list(tables.rows(tables.sections(compile(made), found), found)[0])
+    assert "stress [kN/cm^2]" in heads
+    other = relax(Scene.read({**scene, "forces": [{**bar, "axial_stiffness": 4e4}, *scene["forces"]]}))
+    assert "stress" not in other.force("bar")
 
 
 def test_cloth_uses_its_warp_or_its_weft() -> None:

@@ -106,7 +106,7 @@ def solved(path: Path) -> np.ndarray:
     return moved.reshape(-1, 6)
 
 
-@pytest.mark.parametrize("hinged", [{}, {"release_start": "yz"}, {"release_end": "xz", "normal": [1, 0, 0]}])
+@pytest.mark.parametrize("hinged", [{}, {"release_start": "yz"}, {"release_end": ["xz"], "normal": [1, 0, 0]}])
 def test_a_frame_is_the_same_model_for_the_other_program(hinged: Spec, tmp_path: Path) -> None:
     """Points, elements and sets by meshio; displacements by matrices, to the rotations of 1e-7 of loads so small."""
     found = hookean.relax(Scene.read(frame(**hinged)))

@@ -293,6 +293,32 @@ def test_beams_in_ifc_are_rigid_with_their_hinges_and_eccentric_ends(mast: Resul
     assert off.ConnectionConstraint.EccentricityInX == 0.1
 
 
+def test_elastic_supports_have_their_stiffness_and_reaction_in_ifc(tmp_path: Path) -> None:
+    """Along and about each axis the stiffness, true where an anchor holds, false where nothing does."""
+    section = {"E": 1e6, "G": 4e5, "A": 1.0, "Iy": 0.01, "Iz": 0.02, "J": 0.02}
+    bearing = {"kind": "support", "particles": [0, 1], "stiffness": [[10, 20, 30], [0, 5, 0]],
+               "rotation_stiffness": [[0, 7, 0], [0, 0, 0]]}  # fmt: skip
+    push = {"kind": "unary", "particles": [0], "vector": [0, 0, -3]}
+    spec = {
+        "particles": [[0, 0, 0], [2, 0, 0]],
+        "forces": [{"kind": "beam", "particles": [[0, 1]], **section}, bearing, push],
+        "anchors": [{"particles": [1], "axes": "xz", "rotations": "x"}],
+    }
+    found = hookean.relax(Scene.read(spec))
+    found.save(tmp_path / "beam.ifc")
+    read = ifcopenshell.open(str(tmp_path / "beam.ifc"))
+    log = ifcopenshell.validate.json_logger()
+    ifcopenshell.validate.validate(read, log)
+    assert not log.statements
+    points = read.by_type("IfcStructuralPointConnection")
+    conditions = [[axis.wrappedValue for axis in list(point.AppliedCondition)[1:]] for point in points]
+    assert conditions == [[10.0, 20.0, 30.0, False, 7.0, False], [True, 5.0, True, True, False, False]]
+    numbers = {p.Name: p.NominalValue.wrappedValue
+               for own in points[0].IsDefinedBy for p in own.RelatingPropertyDefinition.HasProperties}  # fmt: skip
+    assert numbers["reaction z [N]"] == found.reactions["force"][0, 2] > 0.0
+    assert numbers["reaction moment y [N m]"] == found.reactions["moment"][0, 1] != 0.0
+
+
 def test_names_are_plain_and_each_there_once() -> None:
     assert plain_names(["edge cable", "edge-cable", "1", "é", "edge cable"]) == [
         "EDGE_CABLE", "EDGE_CABLE_2", "G_1", "GROUP", "EDGE_CABLE_3",

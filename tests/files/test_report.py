@@ -83,7 +83,7 @@ def test_the_numbers_are_those_of_the_results(scene: Scene) -> None:
     maxima = found.rows["Maxima of all cases, and where they are"]
     largest = float(cases.cases["ULS 1"].result.force("cable <1>")["force"].max())
     assert ["cable <1> force", "largest", f"{largest:.5g}", "ULS 1", "N"] in [row[:5] for row in maxima]
-    assert len(found.rows["Reactions"]) == 3
+    assert len(found.rows["Largest reactions of all cases"]) == 3
     loads = {row[0]: row for row in reversed(found.rows["Case ULS 1"])}  # the first table has the loads
     assert loads["snow load"][3] == "0, 0, -15" and loads["weight"][3] == "0, 0, -0.33"
     assert loads["together"][3] == "0, 0, -15.33"
@@ -126,7 +126,7 @@ def test_a_report_of_beams_has_the_moments_of_loads_and_supports() -> None:
             {"kind": "unary", "name": "P", "particles": [1], "vector": [0, 0, -2], "moment": [0, 3, 0]},
             {"kind": "unary", "name": "pair", "particles": [0, 1], "vector": [[0, 0, -1], [0, 0, -3]]},
         ],
-        "anchors": [{"particles": [0], "rotations": "xyz"}],
+        "anchors": [{"name": "foot", "particles": [0], "rotations": "xyz"}],
         "load_cases": {"P": {"forces": ["P"]}, "pair": {"forces": ["pair"]}},
     }
     text = report(Scene.read(scene), limits=read_limits("max_displacement = 1\n"), pictures=False)
@@ -135,5 +135,9 @@ def test_a_report_of_beams_has_the_moments_of_loads_and_supports() -> None:
     assert load[2:4] == ["1", "0, 0, -2"] and load[5] == "0, 3, 0"
     load = next(row for row in rows["Case pair"] if row[0] == "pair")
     assert load[2:4] == ["2", "0, 0, -4"] and load[4].startswith("0.75, 0, ")  # (0 x 1 + 1 x 3) / 4
-    _, support = rows["Reactions"]
+    _, support = rows["Largest reactions of all cases"]
     assert float(support[2]) == pytest.approx(4.0) and float(support[4]) == pytest.approx(5.0)
+    clamp = next(row for row in rows["Case P"] if row[:3] == ["foot", "0", "0, 0, 0"])
+    force, moment = ([float(part) for part in cell.split(",")] for cell in clamp[3:])
+    assert force == pytest.approx([0, 0, 2], abs=1e-6) and moment == pytest.approx([0, -5.0, 0], abs=1e-6)
+    assert text.count("Reactions together: 0, 0, 4 N.") == 1 and "<h3>Reactions</h3>" in text.split("Case P")[0]

@@ -66,6 +66,7 @@ HINTS = {
     "vectors": "vector",
     "yes or no": "bool",
     "text": "str",
+    "texts": "str",
     "points": "point",
     "rows of points": "point",
 }
@@ -197,7 +198,7 @@ def _tooltip(described: Mapping[str, Any], field: Mapping[str, Any]) -> str:
     told = f"{told}."
     if "choices" in field:
         told += f" One of {', '.join(filter(None, field['choices']))}."
-    if field["type"] in ("numbers", "vectors") and "for each" not in told:
+    if field["type"] in ("numbers", "texts", "vectors") and "for each" not in told:
         told += " One for all, or one for each."
     if not _required(described, field) and field["default"] not in (None, ""):
         told += f" Default: {_said(field['default'])}."

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.analysis.at_rest import AtRest
-from hookean.analysis.matrices import Unknowns, factor
+from hookean.analysis.matrices import Unknowns, against_turns, factor
 from hookean.errors import InputError
 from hookean.system.state import State
 from hookean.system.system import System
@@ -57,13 +57,15 @@ class Follower:
         self.state = rest.state.copy()
         self.unknowns = Unknowns.of(rest.system, rest.state, rest.free)
         self.shortened = 1.0
+        self.hinged = False  # whether the tangent is singular at the start
         self.constant = all(group.cls.constant for group in load_system.groups)
 
     def first(self) -> Point:
         """The point without the loads."""
-        solved = self._solve(self.rest.state.x, 0.0)
         matrix = self.unknowns.tangent(self.rest.system, self.rest.state)
-        if solved is None or solved[2] or factor(matrix) is None:
+        self.hinged = factor(matrix) is None
+        solved = self._solve(self.rest.state.x, 0.0)
+        if solved is None or solved[2] or factor(self._held(matrix)) is None:
             said = "without these loads the structure has no stiffness against some motion; brace or prestress it"
             raise InputError("model", said)
         _, tangent, negatives = solved
@@ -212,6 +214,10 @@ class Follower:
         apart = float(np.linalg.norm(found.x - least))
         return found if max(apart, high - low) <= NEAR * float(np.linalg.norm(after.moved)) else None
 
+    def _held(self, matrix: Any) -> Any:
+        """A tangent with a stiffness against turns of hinged joints that move nothing, if there are some."""
+        return against_turns(matrix, self.unknowns.dofs, self.rest.system.slots.count)[0] if self.hinged else matrix
+
     def _solve(self, x: Floats, load: float) -> tuple[Floats, Floats, int] | None:
         """At a shape: the movement that what is out of balance makes, the tangent movement for a unit of the factor,
         and the number of negative eigenvalues. `settled`: whether it is in balance."""
@@ -221,7 +227,7 @@ class Follower:
         matrix = self.unknowns.tangent(self.rest.system, self.state)
         if not self.constant:
             matrix = _sum(matrix, load * self.unknowns.tangent(self.loads, self.load_state))
-        found = _factored(matrix)
+        found = _factored(self._held(matrix))
         if found is None:
             return None
         left, force = self.unknowns.gather(inner + load * outer), self.unknowns.gather(outer)

@@ -44,11 +44,10 @@ def beam_places(system: Any) -> BeamPlaces:
             continue
         for part in group.parts:
             index = group.block.indices[part.rows]
-            start, end = part.force.release_start, part.force.release_end
-            kept = np.array(
-                [True, "x" not in start + end, "y" not in start, "y" not in end, "z" not in start, "z" not in end]
-            )
-            found.append((part.number, index, group.block.parameters[part.rows], np.tile(kept, (len(index), 1))))
+            y, z = (part.force.hinged(axis, len(index)) for axis in "yz")
+            torque = part.force.hinged("x", len(index)).any(axis=1)
+            released = np.column_stack([np.zeros(len(index), bool), torque, y, z])
+            found.append((part.number, index, group.block.parameters[part.rows], ~released))
     found.sort(key=lambda item: item[0])
     if not found:
         none = np.zeros((0, 2), np.int64)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from hookean.analysis.arc_length import _sum
 from hookean.analysis.at_rest import AtRest, divided, load_numbers, relaxed
 from hookean.analysis.frequencies import MOST, _scaled
-from hookean.analysis.matrices import Unknowns, factor
+from hookean.analysis.matrices import Unknowns, against_turns, factor
 from hookean.analysis.stress_stiffness import known, stress_stiffness
 from hookean.errors import InputError
 from hookean.scene.scene import Scene
@@ -83,7 +83,8 @@ def buckling(scene: Scene, count: int = 3, *, loads: Sequence[str] | None = None
     rest = relaxed(rest_system, start, "without the loads")
     load_state.x = rest.state.x
     unknowns = Unknowns.of(rest_system, rest.state, rest.free)
-    stiffness = unknowns.tangent(rest_system, rest.state)
+    tangent = unknowns.tangent(rest_system, rest.state)
+    stiffness = against_turns(tangent, unknowns.dofs, rest_system.slots.count)[0]
     found = factor(stiffness)
     if found is None or found.negatives:
         said = "without these loads the structure has no stiffness against some motion; brace it, prestress it or use"

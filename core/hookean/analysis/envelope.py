@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hookean.running.utilisation import NAME, dimensions
+from hookean.running.utilisation import NAME, STRESS, dimensions
 from hookean.values.units import Units
 
 Floats = NDArray[np.float64]
@@ -21,6 +21,14 @@ def first_largest(values: Floats) -> int:
     """The place of the largest value (m,), of several that are alike the first; 0 of none."""
     largest = values.max(initial=-np.inf)
     return int(np.argmax(values >= largest - ALIKE * abs(largest))) if len(values) else 0
+
+
+SHOWN = ("force", "moment", "warp", "weft", STRESS, NAME)
+"""Columns of forces that a summary has."""
+
+
+def _both(found: Extremes) -> list[tuple[Floats, Ints]]:
+    return [(found.smallest, found.smallest_case), (found.largest, found.largest_case)]
 
 
 @dataclass(frozen=True)
@@ -67,7 +75,7 @@ class Envelope:
         lines = [self._line("displacement", self.displacement, spot, unit.length, f"particle {spot}")]
         for entry in self.forces:
             for name, found in entry["columns"].items():
-                if name not in ("force", "moment", NAME) or not len(found.largest):
+                if name not in SHOWN or not len(found.largest):
                     continue
                 kind = unit.of(dimensions(entry["kind"])[name]) or "-"
                 at, low = first_largest(found.largest), first_largest(-found.smallest)
@@ -75,6 +83,7 @@ class Envelope:
                 if found.smallest[low] < 0.0:
                     case = self.cases[found.smallest_case[low]]
                     lines.append(f"  smallest {found.smallest[low]:.5g} {kind} at element {low} in {case}")
+            lines += self._bending(entry)
         if len(self.particles):
             at = first_largest(self.reaction.largest)
             lines.append(self._line("reaction", self.reaction, at, unit.force, f"particle {self.particles[at]}"))
@@ -82,6 +91,20 @@ class Envelope:
             at = first_largest(self.moment.largest)
             where = f"particle {self.particles[at]}"
             lines.append(self._line("reaction moment", self.moment, at, unit.of("moment"), where))
+        return lines
+
+    def _bending(self, entry: dict[str, Any]) -> list[str]:
+        """The largest size of the moments at either end of beams, about each axis."""
+        lines, unit = [], self.units.of("moment")
+        for axis in "yz":
+            ends = [entry["columns"][name] for name in (f"M{axis}0", f"M{axis}1") if name in entry["columns"]]
+            values = [(part, which) for end in ends for part, which in _both(end)]
+            if values and len(values[0][0]):
+                sizes = np.abs(np.array([part for part, _ in values]))
+                at = first_largest(sizes.max(axis=0))
+                case = self.cases[values[int(sizes[:, at].argmax())][1][at]]
+                title = f"{entry['name'] or entry['kind']} moment M{axis}"
+                lines.append(f"{title}: largest {sizes[:, at].max():.5g} {unit} at element {at} in {case}")
         return lines
 
     def _line(self, what: str, found: Extremes, at: int, unit: str, where: str) -> str:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from hookean.analysis.at_rest import AtRest
 from hookean.analysis.frozen_films import balanced, frozen_film
-from hookean.analysis.matrices import Unknowns, factor
+from hookean.analysis.matrices import Unknowns, against_turns, factor
 from hookean.errors import InputError
 from hookean.forces import Block, Force, base, elastic
 from hookean.forces.base import Places
@@ -213,7 +213,7 @@ def sharpen(system: System, state: State) -> None:
     unknowns = Unknowns.of(system, state, rest.free)
     left = system.evaluate(state)[0] * rest.free
     for _ in range(STEPS):
-        found = factor(unknowns.tangent(system, state))
+        found = factor(against_turns(unknowns.tangent(system, state), unknowns.dofs, system.slots.count)[0])
         if found is None or not left.any():
             return
         before = state.x

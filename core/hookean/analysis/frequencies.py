@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.analysis.at_rest import AtRest
-from hookean.analysis.matrices import Unknowns, condensed, factor, largest_row
+from hookean.analysis.matrices import Unknowns, against_turns, condensed, factor, largest_row
 from hookean.errors import InputError
 from hookean.running.result import Result
 from hookean.running.simulation import Simulation
@@ -86,9 +86,10 @@ def frequencies(model: Scene | Result | Simulation, count: int = 6, *, masses: A
     rest = AtRest.of(model)
     mass = _masses(rest, masses)
     unknowns = Unknowns.of(rest.system, rest.state, rest.free)
-    stiffness = unknowns.tangent(rest.system, rest.state)
+    tangent = unknowns.tangent(rest.system, rest.state)
+    stiffness, turns = against_turns(tangent, unknowns.dofs, rest.system.slots.count)
     own = mass[unknowns.dofs // 3]
-    squares, vectors = lowest(stiffness, own, min(count, len(own)))
+    squares, vectors = lowest(stiffness, own, min(count, len(own) - turns))
     vectors = vectors / np.sqrt(own)[:, None]
     angular = np.sign(squares) * np.sqrt(np.abs(squares))
     modes = np.array([_scaled(unknowns.spread(vector)) for vector in vectors.T]).reshape(-1, len(mass), 3)

@@ -19,6 +19,8 @@ from hookean.system.system import System
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+TURNS = 1_500  # rotations
+NOTHING = 1e-12  # of the largest stiffness of rotations
 DENSE = 600  # unknowns up to which dense matrices are as quick
 
 
@@ -106,6 +108,24 @@ def factor(matrix: Any) -> Factor | None:
     lower = sparse.tril(whole, format="csc")
     lower.sort_indices()
     return Factors(lower.indices.astype(np.int32), lower.indptr.astype(np.int32)).factor(lower.data)
+
+
+def against_turns(matrix: Any, dofs: Ints, first: int) -> tuple[Any, int]:
+    """A tangent with its largest stiffness against turns of hinged joints that meet none and move nothing, and how many
+    these are: the kernel of its part of rotations, of the unknowns from row `first` of the axes `dofs` on. Nothing else
+    changes. Of more than `TURNS` rotations none are looked for."""
+    import scipy.sparse as sparse
+
+    turning = np.flatnonzero(dofs >= 3 * first)
+    if not 0 < len(turning) <= TURNS:
+        return matrix, 0
+    sizes, vectors = np.linalg.eigh(matrix[turning][:, turning].toarray())
+    loose = vectors[:, np.abs(sizes) <= NOTHING * max(float(np.abs(sizes).max()), 1e-300)]
+    if not loose.shape[1]:
+        return matrix, 0
+    row, column = np.repeat(turning, len(turning)), np.tile(turning, len(turning))
+    held = (largest_row(matrix) * (loose @ loose.T)).ravel()
+    return (matrix + sparse.coo_matrix((held, (row, column)), shape=matrix.shape)).tocsc(), loose.shape[1]
 
 
 def largest_row(matrix: Any) -> float:

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hookean.analysis.beam_strains import beam_columns, beam_places
+from hookean.analysis.beam_strains import BeamPlaces, beam_columns, beam_places
 from hookean.errors import InputError
 from hookean.forces import KINDS
+from hookean.forces.beam_element import OFFSET
 from hookean.running.result import Result
 from hookean.scene.scene import Scene
 from hookean.system.system import compile
@@ -20,6 +21,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 RANK = 1e-10  # of the largest singular value: what is below counts as zero
+TURNS = 1e-6  # what of a turn is left at right angles to the rigid motions, where it is none of them
 LARGEST = 4_000  # bars or free axes
 
 
@@ -29,8 +31,9 @@ class Mechanisms:
 
     With b `bars`, the 6 forces of each of the `beams` less those that are released, f `free_axes`, of rotations as
     well, and the `rank` r of the equilibrium matrix: b + 6 beams - released - r are the `self_stress_states`, and f - r
-    motions strain nothing to first order, of which `rigid_motions` move all as a whole and the others are its
-    `mechanisms`. `modes` (mechanisms, n, 3) [-] are those, at right angles to each other and to the rigid motions, and
+    motions strain nothing to first order, of which `rigid_motions` move all as a whole, `free_turns` only turn hinged
+    joints and struts about themselves, so that no particle moves, and the others are its `mechanisms`. `modes`
+    (mechanisms, n, 3) [-] are the last, at right angles to each other and to all of the others, and
     `turns` (mechanisms, r, 3) [1/length] the rotation vectors of particles with orientations in them; `self_stresses`
     (s, b) [-] forces in the bars (tension +) that balance without loads, the largest part of each 1, and
     `beam_stresses` (s, beams, 6) in the beams: N, and Mt, My at both ends, Mz at both ends over the beam's length.
@@ -51,6 +54,7 @@ class Mechanisms:
     beams: int = 0
     turns: Floats = field(default_factory=lambda: np.zeros((0, 0, 3)), repr=False)
     beam_stresses: Floats = field(default_factory=lambda: np.zeros((0, 0, 6)), repr=False)
+    free_turns: int = 0
 
     @property
     def kind(self) -> str:
@@ -62,16 +66,27 @@ class Mechanisms:
     def summary(self) -> list[str]:
         """The counts, for a person."""
         beams = f"{self.beams} beams, " if self.beams else ""
+        turns = f", free turns of hinged joints: {self.free_turns}" if self.free_turns else ""
         return [
             f"{self.bars} bars, {beams}{self.free_axes} free axes, rank {self.rank} of the equilibrium matrix",
-            f"mechanisms: {self.mechanisms}, rigid motions: {self.rigid_motions}",
+            f"mechanisms: {self.mechanisms}, rigid motions: {self.rigid_motions}{turns}",
             f"states of self-stress: {self.self_stress_states}",
             f"the net is {self.kind}",
         ]
 
     def to_dict(self) -> dict[str, Any]:
         """As plain lists and numbers, by the names of the HTTP answer."""
-        counts = ("bars", "beams", "free_axes", "rank", "mechanisms", "rigid_motions", "self_stress_states", "kind")
+        counts = (
+            "bars",
+            "beams",
+            "free_axes",
+            "rank",
+            "mechanisms",
+            "rigid_motions",
+            "free_turns",
+            "self_stress_states",
+            "kind",
+        )
         arrays = ("modes", "turns", "self_stresses", "beam_stresses", "pairs", "particles")
         return {
             **{name: getattr(self, name) for name in counts},
@@ -115,7 +130,8 @@ def mechanisms(model: Scene | Result) -> Mechanisms:
     rank = int((sizes > RANK * sizes.max(initial=0.0)).sum()) if sizes.size else 0
     loose, found = left[:, rank:], right[rank:]
     rigid = _rigid(system, x, dofs, ~free & touched[:, None])
-    inner = _apart(loose, rigid)
+    turns = _apart(loose @ _unmoved(system, beams, dofs, loose), rigid, TURNS)
+    inner = _apart(loose, np.hstack([rigid, turns]))
     modes = np.zeros((inner.shape[1], x.size))
     modes[:, dofs] = inner.T
     moved = modes.reshape(-1, len(x), 3)
@@ -136,6 +152,7 @@ def mechanisms(model: Scene | Result) -> Mechanisms:
         len(beams.ends),
         moved[:, system.slots.first] / system.slots.lengths[:, None],
         stress[:, len(pairs) :].reshape(len(found), len(beams.ends), 6),
+        turns.shape[1],
     )
 
 
@@ -188,8 +205,18 @@ def _rigid(system: Any, x: Floats, dofs: Ints, fixed: NDArray[np.bool_]) -> Floa
     return np.asarray(basis[:, sizes > RANK * max(sizes.max(initial=0.0), 1e-300)])
 
 
-def _apart(loose: Floats, rigid: Floats) -> Floats:
-    """What is left of motions (f, k) at right angles to the rigid ones, at right angles to each other."""
-    rest = loose - rigid @ (rigid.T @ loose)
+def _unmoved(system: Any, beams: BeamPlaces, dofs: Ints, loose: Floats) -> Floats:
+    """Combinations (k, m) of motions (f, k) that move no particle and no eccentric end of a beam."""
+    moving = np.zeros((2 * len(system.slots) + system.slots.count, 3), bool)
+    moving[: system.slots.count] = True
+    if len(beams.ends):
+        moving[beams.slots[beams.parameters[:, OFFSET : OFFSET + 6].reshape(-1, 2, 3).any(axis=2)]] = True
+    _, sizes, right = np.linalg.svd(loose[moving.ravel()[dofs]])
+    return np.asarray(right[int((sizes > TURNS).sum()) :].T)
+
+
+def _apart(loose: Floats, others: Floats, least: float = 0.5) -> Floats:
+    """What is left of motions (f, k) at right angles to some others, at right angles to each other."""
+    rest = loose - others @ (others.T @ loose)
     basis, sizes, _ = np.linalg.svd(rest, full_matrices=False)
-    return np.asarray(basis[:, sizes > 0.5])
+    return np.asarray(basis[:, sizes > least])

@@ -21,7 +21,8 @@ class Options:
     """Write a report of the model in a file as one HTML file, ready to print: form, loads, load cases, maxima and where
     they are, reactions, pictures. The input is never changed.
 
-    Exits with 0, or 2 for bad input or a form that cannot be found or frozen.
+    Exits with 0 if all converged, 1 if a limit is exceeded, 2 for bad input or a form that cannot be found or frozen, 3
+    if no equilibrium was found; the report is written if not 2.
     """
 
     source: Annotated[Path, typer.Argument(metavar="FILE", help=".3dm, .obj, .json, .npz or .hookean file")]
@@ -46,20 +47,25 @@ def run(options: Options) -> int:
             raise InputError(target.name, "is not an .html file; give a name that ends in .html")
         outputs.check([target], (options.source, options.recipe, options.check))
         from hookean.atomic_write import put
-        from hookean.files.report import report
+        from hookean.files.report import reported
         from hookean.files.tables import read_limits
 
         limits = None if options.check is None else read_limits(relax.text_of(options.check), options.check.name)
         scene = analyse.scene_of(options.source, options.recipe)
         with outputs.folders([target]):
             processes = (os.cpu_count() or 1) if len(scene.particles) >= MANY else 1
-            text = report(scene, title=options.title or options.source.stem, limits=limits, processes=processes)
-            put(target, text.encode(), lambda back: None)
+            found = reported(scene, title=options.title or options.source.stem, limits=limits, processes=processes)
+            put(target, found.text.encode(), lambda back: None)
     except InputError as error:
         return relax.bad(error)
+    name = options.source.name
+    for sentence in found.exceeded:
+        typer.echo(f"hookean: {name}: limit exceeded: {sentence}", err=True)
+    for sentence in found.unsettled:
+        typer.echo(f"hookean: {name}: {sentence}", err=True)
     if not options.quiet:
-        typer.echo(f"{options.source.name} -> {target}")
-    return relax.CONVERGED
+        typer.echo(f"{name} -> {target}")
+    return relax.NOT_CONVERGED if found.unsettled else relax.EXCEEDED if found.exceeded else relax.CONVERGED
 
 
 app = taking(Options, run)

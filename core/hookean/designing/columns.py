@@ -134,7 +134,8 @@ class Column:
             value = system.places.recompile(self.number, force).parameters[:, self.group.block.names.index(field)]
         if value is None:
             raise InputError(f"{self.pointer}/field", f"{field} has no value to start from; give it one")
-        if isinstance(value, bool | str) or not isinstance(value, int | float | np.ndarray):
+        text = isinstance(value, np.ndarray) and value.dtype.kind == "U"
+        if text or isinstance(value, bool | str) or not isinstance(value, int | float | np.ndarray):
             raise InputError(f"{self.pointer}/field", f"{field} is not a number; only numbers vary")
         return np.asarray(value, dtype=np.float64)
 

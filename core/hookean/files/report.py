@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from html import escape
 from typing import Any
 
@@ -38,7 +39,22 @@ tr { break-inside: avoid; } h2, h3 { break-after: avoid; }
 """
 
 
-def report(
+@dataclass(frozen=True)
+class Report:
+    """A report as the `text` of an HTML file; sentences on limits that are `exceeded` and on what is `unsettled`, not
+    in equilibrium, each with its case."""
+
+    text: str
+    exceeded: tuple[str, ...]
+    unsettled: tuple[str, ...]
+
+
+def report(scene: Scene, **options: Any) -> str:
+    """The text of `reported`, with its options."""
+    return reported(scene, **options).text
+
+
+def reported(
     scene: Scene,
     *,
     title: str = "Report",
@@ -46,8 +62,8 @@ def report(
     pictures: bool = True,
     cases: LoadCases | None = None,
     processes: int = 1,
-) -> str:
-    """The report of a scene as the text of an HTML file.
+) -> Report:
+    """The report of a scene.
 
     With load cases the form is found and frozen, and all cases and combinations are solved; else the scene is relaxed.
     `limits`, as `tables.read_limits` gives them, are checked in each case. The same scene gives the same text. `cases`
@@ -58,15 +74,24 @@ def report(
         cases = load_cases(scene, processes=processes)
     form = cases.form if cases is not None else relax(scene)
     parts = [f"<h1>{escape(title)}</h1>", *_scene(scene, form), *_form(scene, form, pictures)]
+    found, results = list[str](), {"": form}
     if cases is not None:
         parts += [*_cases(scene, cases), *_envelope(cases.envelope, form), *_reactions(cases.envelope, form)]
-        for case in cases.cases.values():
-            parts += _case(case, cases, limits, pictures)
+        for name, case in cases.cases.items():
+            exceeded = None if limits is None else _exceeded_in(case, cases, limits)
+            parts += _case(case, exceeded, pictures)
+            found += [f"{name}: {sentence}" for sentence in exceeded or ()]
+            results[name] = case.result
     elif limits is not None:
-        parts += _checks(_exceeded(limits, compile(scene), form))
+        found = _exceeded(limits, compile(scene), form)
+        parts += _checks(found)
     body = "\n".join(parts)
     head = f'<meta charset="utf-8"><title>{escape(title)}</title><style>{STYLE}</style>'
-    return f'<!DOCTYPE html>\n<html lang="en"><head>{head}</head><body>\n{body}\n</body></html>\n'
+    text = f'<!DOCTYPE html>\n<html lang="en"><head>{head}</head><body>\n{body}\n</body></html>\n'
+    unsettled = (
+        f"{name}: {one.message}" if name else one.message for name, one in results.items() if not one.converged
+    )
+    return Report(text, tuple(found), tuple(unsettled))
 
 
 def _scene(scene: Scene, form: Result) -> Iterator[str]:
@@ -89,6 +114,7 @@ def _form(scene: Scene, form: Result, pictures: bool) -> Iterator[str]:
     if pictures:
         yield _picture(form, "Form and forces in it")
     yield from _loads(form, "Loads that act on the form")
+    yield from _carried(form)
     yield _table(("force", "column", "smallest", "largest", "unit"), _ranges(form))
 
 
@@ -120,6 +146,34 @@ def _loads(result: Result, title: str) -> Iterator[str]:
         for row, moment in zip(rows, [*map(_vector, found["moment"]), ""], strict=True):
             row.append(moment)
     yield _table(heads, rows)
+
+
+def _carried(result: Result) -> Iterator[str]:
+    """What each support carries, the largest first."""
+    found, units = result.reactions, result.units
+    force = _sizeable(found["force"])
+    if not len(force):
+        return
+    yield "<h3>Reactions</h3>"
+    yield f"<p>Reactions together: {_vector(_sizeable(force.sum(axis=0))[0])} {units.force}.</p>"
+    heads = ["support", "particle", f"x, y, z [{units.length}]", f"reaction x, y, z [{units.force}]"]
+    columns = [force]
+    if len(result.rotations["particles"]):
+        heads.append(f"moment x, y, z [{units.of('force length')}]")
+        columns.append(_sizeable(found["moment"]))
+    rows = []
+    for i in np.argsort(-np.linalg.norm(force, axis=1), kind="stable")[:MOST].tolist():
+        at = int(found["particles"][i])
+        rows.append((found["names"][i], at, _vector(result.particles[at]), *(_vector(column[i]) for column in columns)))
+    yield _table(heads, rows)
+    if len(force) > MOST:
+        yield f"<p>The {MOST} largest of {len(force)} are shown.</p>"
+
+
+def _sizeable(vectors: Any) -> np.ndarray:
+    """Vectors (n, 3) without parts that are less than a millionth of the largest, which are what is out of balance."""
+    rows = np.asarray(vectors, dtype=float).reshape(-1, 3)
+    return np.where(np.abs(rows) < 1e-6 * np.abs(rows).max(initial=0.0), 0.0, rows)
 
 
 def _cases(scene: Scene, cases: LoadCases) -> Iterator[str]:
@@ -181,7 +235,7 @@ def _reactions(found: Envelope, form: Result) -> Iterator[str]:
     if not len(found.particles):
         return
     units = found.units
-    yield "<h2>Reactions</h2>"
+    yield "<h2>Largest reactions of all cases</h2>"
     order = np.argsort(-found.reaction.largest, kind="stable")[:MOST]
     heads = ["support", f"x, y, z [{units.length}]", f"largest reaction [{units.force}]", "in case"]
     kinds = [found.reaction]
@@ -200,21 +254,24 @@ def _reactions(found: Envelope, form: Result) -> Iterator[str]:
         yield f"<p>The {MOST} largest of {len(found.particles)} are shown.</p>"
 
 
-def _case(case: CaseResult, cases: LoadCases, limits: Mapping[str, Any] | None, pictures: bool) -> Iterator[str]:
+def _case(case: CaseResult, exceeded: Sequence[str] | None, pictures: bool) -> Iterator[str]:
     yield f"<h2>Case {escape(case.name)}</h2>"
     given = " + ".join(f"{factor:g} x {name}" for name, factor in case.factors.items())
     yield f"<p>{escape(given)}. {escape(case.result.message)} Stability: {case.result.stability}.</p>"
-    assert case.result.scene is not None
     if pictures:
         yield _picture(case.result, f"Shape and forces under {case.name}")
     yield from _loads(case.result, "Loads")
-    total = np.asarray(case.result.reactions["force"]).reshape(-1, 3).sum(axis=0)
-    yield f"<p>Reactions together: {_vector(total)} {case.result.units.force}.</p>"
+    yield from _carried(case.result)
     yield _table(("force", "column", "smallest", "largest", "unit"), _ranges(case.result))
-    if limits is not None:
-        system, state = cases.frozen.system(case.result.scene)
-        system.x = state.x  # displacements are those from the form
-        yield from _checks(_exceeded(limits, system, case.result))
+    if exceeded is not None:
+        yield from _checks(exceeded)
+
+
+def _exceeded_in(case: CaseResult, cases: LoadCases, limits: Mapping[str, Any]) -> list[str]:
+    assert case.result.scene is not None
+    system, state = cases.frozen.system(case.result.scene)
+    system.x = state.x  # displacements are those from the form
+    return _exceeded(limits, system, case.result)
 
 
 def _exceeded(limits: Mapping[str, Any], system: System, result: Result) -> list[str]:

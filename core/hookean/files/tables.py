@@ -34,7 +34,7 @@ from hookean.analysis.load_cases import slack_elements
 from hookean.errors import InputError
 from hookean.files import cells
 from hookean.running.result import Result
-from hookean.running.utilisation import NAME
+from hookean.running.utilisation import NAME, dimensions
 from hookean.system.system import System
 from hookean.values.units import Units
 
@@ -88,7 +88,7 @@ class Section:
 def sections(system: System, result: Result, built: Built | None = None) -> list[Section]:
     """One section for each force of the scene that has elements, and one of reactions."""
     found: list[Section] = []
-    for number, (force, entry) in enumerate(zip(system.scene.forces, result.forces, strict=True)):
+    for number, entry in enumerate(result.forces):
         if "particles" not in entry:
             continue
         particles = np.asarray(entry["particles"], dtype=np.int64)
@@ -99,7 +99,7 @@ def sections(system: System, result: Result, built: Built | None = None) -> list
         items = () if shape is None else shape.items
         name = str(entry["name"] or entry["kind"])
         kind = str(entry["kind"])
-        found.append(Section(number, name, kind, particles, columns, type(force).outputs, items, owner, []))
+        found.append(Section(number, name, kind, particles, columns, dimensions(kind), items, owner, []))
     found.append(_reactions(system, result, built))
     return found
 

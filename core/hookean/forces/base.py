@@ -140,6 +140,7 @@ class Force(Model):
     role: ClassVar[Literal["internal", "load", "support"]] = "internal"  # internal: forces and moments sum to zero
     conservative: ClassVar[bool] = True  # force = -gradient of the energy the kernel returns
     bears: ClassVar[bool] = False  # a load that can also carry what is loaded, as water does
+    bearing: ClassVar[bool] = False  # an elastic support of single particles: its forces count as reactions
     oriented: ClassVar[bool] = False  # internal, but of a direction fixed in space: a turned shape has other forces
     constant: ClassVar[bool] = False  # the force is the same wherever the particles are
     directed: ClassVar[bool] = False  # a load whose size follows the shape, while its direction stays

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, ClassVar, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import model_validator
 
 from hookean.compiled import dispatch
@@ -28,11 +29,9 @@ from hookean.forces.beam_element import (
 )
 from hookean.forces.beam_frames import drawn_frames, straight_frames
 from hookean.forces.elastic import growth, one_way, section_columns
+from hookean.values.axes import AxisNames, named
 from hookean.values.columns import Directions, IndexRows, Lines, NonNegatives, Positives, Reals, Vectors
 from hookean.values.fields import Field, Maybe
-
-Axes = Literal["", "x", "y", "z", "xy", "xz", "yz", "xyz"]
-
 
 SHORTEST = 1e-20  # length of a beam [length] that has no direction
 
@@ -138,9 +137,9 @@ class Beam(Force):
     drawn length times 1 + expansion x temperature; the section stays.
 
     The section's axis x runs along the beam, z is in the plane of x and `normal`, and y = z cross x. Rows that are
-    straight without stress are bent in, and twisted in where the normals turn along the row. A particle whose beams are
-    all hinged turns freely about their axes: hold it by the `rotations` of an anchor with `axes` "". In motion a
-    particle has an isotropic inertia, that of a rod of its mass and of the mean length of the beams there. Sources:
+    straight without stress are bent in, and twisted in where the normals turn along the row. Turns
+    of particles whose beams are all hinged move nothing, and count as no mechanism. In motion a particle has an
+    isotropic inertia, that of a rod of its mass and of the mean length of the beams there. Sources:
     Oran, "Tangent stiffness in space frames", 1973 (angles to the chord, and shortening); Bergou et al., "Discrete
     elastic rods", 2008 (twist); Przemieniecki, Theory of matrix structural analysis, 1968, 5.6 (shear).
     """
@@ -168,8 +167,12 @@ class Beam(Force):
     offset_end: Vectors = Field(
         default=np.zeros(3), description="From the second particle to where the beam ends [length]; rigid"
     )
-    release_start: Axes = Field(default="", description="Axes of the section about which the start is hinged")
-    release_end: Axes = Field(default="", description="Axes of the section about which the end is hinged")
+    release_start: AxisNames = Field(
+        default="", description="Axes of the section about which the start is hinged, for all or for each"
+    )
+    release_end: AxisNames = Field(
+        default="", description="Axes of the section about which the end is hinged, for all or for each"
+    )
     curvature: Literal["drawn", "straight"] = Field(
         default="drawn", description="Shape without stress: as drawn, or straight, so that rows of beams are bent in"
     )
@@ -177,7 +180,7 @@ class Beam(Force):
     formula: ClassVar[str] = "E = EA u²/(2L) + EI (4a²+4ab+4b²)/(2L) + GJ φ²/(2L)"
     arity: ClassVar[int] = 2
     turns: ClassVar[bool] = True
-    shared: ClassVar[tuple[str, ...]] = ("release_start", "release_end", "curvature")
+    shared: ClassVar[tuple[str, ...]] = ("curvature",)
     outputs: ClassVar[dict[str, str]] = {
         "length": "length", "force": "force", "Vy": "force", "Vz": "force", "Mt": "moment", "My0": "moment",
         "Mz0": "moment", "My1": "moment", "Mz1": "moment", "energy": "energy",
@@ -211,7 +214,7 @@ class Beam(Force):
             arm=np.ones((len(index), 2)),
             length=length,
             A=own.E * own.A / length,
-            J=own.G * own.J / length * (0.0 if "x" in self.release_start + self.release_end else 1.0),
+            J=np.where(self.hinged("x", len(index)).any(axis=1), 0.0, own.G * own.J / length),
             Iy=bending[0],
             Iz=bending[1],
             bow=np.column_stack(bowing),
@@ -229,15 +232,17 @@ class Beam(Force):
             soft = np.where(area > 0.0, 12.0 * stiff / (own.G * np.where(area > 0.0, area, 1.0) * length), 0.0)
         own, other = stiff * (1.0 + 3.0 / (1.0 + soft)), stiff * (3.0 / (1.0 + soft) - 1.0)
         none, bow = np.zeros_like(length), length / 30.0
-        start, end = axis in self.release_start, axis in self.release_end
-        if start and end:
-            return np.zeros((len(length), 3)), np.zeros((len(length), 3))
-        if not (start or end):
-            return np.column_stack([own, other, own]), np.column_stack([4.0 * bow, -bow, 4.0 * bow])
+        start, end = self.hinged(axis, len(length)).T
         part = other / own  # the hinged end turns by minus this part of the other one
         left, short = own - other * part, bow * (4.0 + 2.0 * part + 4.0 * part**2)
-        columns = ([none, none, left], [none, none, short]) if start else ([left, none, none], [short, none, none])
-        return np.column_stack(columns[0]), np.column_stack(columns[1])
+        ends = [~start & ~end, start & ~end, end & ~start]  # none of these: hinged at both
+        stiffness = [[own, none, left], [other, none, none], [own, left, none]]
+        shortening = [[4.0 * bow, none, short], [-bow, none, none], [4.0 * bow, short, none]]
+        return tuple(np.column_stack([np.select(ends, kinds) for kinds in of]) for of in (stiffness, shortening))  # type: ignore[return-value]
+
+    def hinged(self, axis: str, count: int) -> NDArray[np.bool_]:
+        """Whether the start and the end of each of `count` beams (m, 2) are hinged about an axis."""
+        return np.column_stack([named(ends, axis, count) for ends in (self.release_start, self.release_end)])
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """Length of the chord, forces and moments of the section, and strain energy of each beam."""

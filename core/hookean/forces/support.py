@@ -54,6 +54,7 @@ class Support(Force):
 
     formula: ClassVar[str] = "E = Σ (k d² + kr φ²)/2"
     role: ClassVar[Literal["internal", "load", "support"]] = "support"
+    bearing: ClassVar[bool] = True
     creates: ClassVar[bool] = False
     rider: ClassVar[type[Rider] | None] = SupportTurns
     outputs: ClassVar[dict[str, str]] = {"force": "force", "moment": "moment"}

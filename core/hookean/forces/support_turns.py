@@ -95,6 +95,7 @@ class SupportTurns(Rider):
 
     kind_name: ClassVar[str] = "support"
     role: ClassVar[Literal["internal", "load", "support"]] = "support"
+    bearing: ClassVar[bool] = True
     kernel: ClassVar[Any] = staticmethod(support_turn_kernel)
     hessian: ClassVar[Any] = staticmethod(support_turn_hessian)
 

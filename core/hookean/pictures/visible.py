@@ -116,8 +116,9 @@ def _points(pointer: str, given: Any, count: int | None) -> Floats:
 def _of_result(result: Result, scene: Scene | None) -> Things:
     x = result.particles
     pairs, forces = springs(result)
-    held = np.asarray(result.reactions["particles"], dtype=np.int64)
-    pushes = [np.stack([x[held], np.asarray(result.reactions["force"]).reshape(-1, 3)], axis=1)]
+    carried = np.asarray(result.reactions["particles"], dtype=np.int64)
+    held = carried[np.asarray(result.reactions["exact"], dtype=bool)]
+    pushes = [np.stack([x[carried], np.asarray(result.reactions["force"]).reshape(-1, 3)], axis=1)]
     touching = np.asarray(result.contacts["particles"], dtype=np.int64)
     pushes.append(np.stack([x[touching], np.asarray(result.contacts["force"]).reshape(-1, 3)], axis=1))
     pushes.append(_at_particles(result, "support"))
@@ -137,6 +138,8 @@ def _at_particles(result: Result, role: str) -> Floats:
     total = np.zeros_like(result.particles)
     for columns in result.forces:
         cls, force = KINDS[columns["kind"]], columns.get("force")
+        if cls.bearing:  # among the reactions
+            continue
         if cls.role == role and cls.arity == 1 and force is not None and np.ndim(force) == 2:
             np.add.at(total, np.asarray(columns["particles"])[:, 0], np.asarray(force))
     loaded = np.flatnonzero(total.any(axis=1))

@@ -14,7 +14,7 @@ from hookean.errors import InputError
 from hookean.forces import KINDS
 from hookean.forces.base import Rider
 from hookean.running.loads import applied
-from hookean.running.utilisation import NAME, dimensions, utilisation
+from hookean.running.utilisation import NAME, STRESS, dimensions, stress, utilisation
 from hookean.scene.report import Report
 from hookean.scene.scene import Scene
 from hookean.stability.equilibrium import Equilibrium, Stability, unknown
@@ -49,12 +49,13 @@ class Result:
     """A shape and what holds it, of a `scene`. Notebooks show its summary and a picture.
 
     `particles` (n, 3) [length]; `forces` one dict of columns for each force of the scene (springs: length, force,
-    strain), `reactions` the particles of anchors and the force (k, 3) [force] the anchors put on them; `contacts` the
-    same for floors. Reactions + contacts + loads = 0. `loads` has for each load of the scene its `name`, `kind` and
-    number (`force`), the `resultant` (k, 3) [force], the `centre` (k, 3) [length], through which the resultant of
-    parallel forces goes, and the `moment` (k, 3) about it [force length]. `rotations`: which `particles` have one (ends
-    of beams), and the unit `quaternions` (r, 4) w, x, y, z that turn them from the start; reactions have the `moment`
-    (k, 3) [force length] there, no rows where no particle has a rotation. `energy` by kind and in total [force length].
+    strain), `reactions` the particles of anchors and elastic supports, the force (k, 3) [force] that these put on them,
+    and whether an anchor holds them (`exact`); `contacts` the same for floors. Reactions + contacts + loads = 0.
+    `loads` has for each load of the scene its `name`, `kind` and number (`force`), the `resultant` (k, 3) [force], the
+    `centre` (k, 3) [length], through which the resultant of parallel forces goes, and the `moment` (k, 3) about it
+    [force length]. `rotations`: which `particles` have one (ends of beams), and the unit `quaternions` (r, 4) w, x, y,
+    z that turn them from the start; reactions have the `moment` (k, 3) [force length] there, no rows where no particle
+    has a rotation. `energy` by kind and in total [force length].
     """
 
     status: Status
@@ -102,13 +103,12 @@ class Result:
         lines = [f"{len(self.particles)} particles"]
         for entry in self.forces:
             title = f"{entry['name']} ({entry['kind']})" if entry["name"] else entry["kind"]
-            column = next((c for c in ("force", "moment") if np.size(entry.get(c, ()))), None)
-            if column is None:
+            said = [self._range(entry, c) for c in ("force", "moment", "warp", "weft") if np.size(entry.get(c, ()))]
+            if not said:
                 continue
-            values = np.asarray(entry[column])
-            sizes = np.linalg.norm(values, axis=1) if values.ndim == 2 else values
-            unit = self.units.of(KINDS[entry["kind"]].outputs[column])
-            line = f"{title}: {len(sizes)} elements, {column} {sizes.min():.4g} to {sizes.max():.4g} {unit}"
+            line = f"{title}: {len(entry['particles'])} elements, {', '.join(said if 'warp' in entry else said[:1])}"
+            ends = [np.abs(entry[c]).max() for c in ("My0", "Mz0", "My1", "Mz1") if np.size(entry.get(c, ()))]
+            line += f", moments up to {max(ends):.4g} {self.units.of('moment')}" if ends else ""
             used = f", utilisation up to {100.0 * np.max(entry[NAME]):.4g} %" if np.size(entry.get(NAME, ())) else ""
             lines.append(line + used)
         reactions = np.asarray(self.reactions["force"]).reshape(-1, 3)
@@ -119,6 +119,13 @@ class Result:
             unit = self.units.force
             lines.append(f"{len(reactions)} reactions: largest {largest:.4g} {unit}, together ({total}) {unit}")
         return lines
+
+    def _range(self, entry: dict[str, Any], column: str) -> str:
+        """The smallest and the largest value of a column."""
+        values = np.asarray(entry[column])
+        sizes = np.linalg.norm(values, axis=1) if values.ndim == 2 else values
+        unit = self.units.of(KINDS[entry["kind"]].outputs[column])
+        return f"{column} {sizes.min():.4g} to {sizes.max():.4g} {unit}"
 
     def __repr__(self) -> str:
         return "\n".join([f"Result: {self.status}. {self.message}", *(f"  {line}" for line in self.summary())])
@@ -257,13 +264,14 @@ def gather(
     energy["total"] = sum(energy.values())
     memories = zip(system.groups, state.memory, strict=True)
     acting = [system.element_forces(group, state, memory) for group, memory in memories]
+    forces = _measures(system, state, acting)
     return Result(
         status=status,
         message=message,
         particles=state.x[: system.slots.count].copy(),
         geometry=carried(system, state),
-        forces=_measures(system, state, acting),
-        reactions=_reactions(system, state, found),
+        forces=forces,
+        reactions=_reactions(system, state, found, forces),
         rotations={"particles": system.slots.particles.copy(), "quaternions": system.slots.quaternions(state.x)},
         contacts=_contacts(found),
         loads=applied(system, state, acting),
@@ -329,9 +337,10 @@ def _measures(system: System, state: State, acting: list[Floats]) -> list[dict[s
                 continue
             columns = part.force.measure(block, state.x, forces[part.rows])
             entries[part.number].update(particles=group.particles[part.rows], **columns)
-            used = utilisation(part.force, system.places, columns)
-            if used is not None:
-                entries[part.number][NAME] = used
+            for name, rule in ((STRESS, stress), (NAME, utilisation)):
+                found = rule(part.force, system.places, columns)
+                if found is not None:
+                    entries[part.number][name] = found
     return entries
 
 
@@ -341,17 +350,36 @@ def _ridden(entry: dict[str, Any], columns: dict[str, Floats], inputs: NDArray[n
         entry[name][inputs] = values
 
 
-def _reactions(system: System, state: State, found: Balance) -> dict[str, Any]:
+def _reactions(system: System, state: State, found: Balance, forces: list[dict[str, Any]]) -> dict[str, Any]:
+    """What anchors and elastic supports put on particles, a row for each of these."""
     held = held_particles(system, state)
-    names = dict.fromkeys(held.tolist(), "")
+    elastic = [
+        (np.asarray(entry["particles"]).reshape(-1), entry)
+        for force, entry in zip(system.scene.forces, forces, strict=True)
+        if force.bearing and "particles" in entry
+    ]
+    rows = np.unique(np.concatenate([held, *(particles for particles, _ in elastic)]))
+    names = dict.fromkeys(rows.tolist(), "")
+    for particles, entry in elastic:
+        names.update(dict.fromkeys(particles.tolist(), entry["name"]))
     # what holds axes names a reaction before what holds rotations alone; else the last one
     for anchor in sorted(system.held, key=lambda anchor: not anchor.free.all()):
         names.update(dict.fromkeys(anchor.particles.tolist(), anchor.name))
+    exact = np.isin(rows, held)
+    force = np.where(exact[:, None], found.reactions[rows], 0.0)
+    moment = system.slots.moments(found.reactions, rows)
+    moment[~exact[: len(moment)]] = 0.0
+    for particles, entry in elastic:
+        at = np.searchsorted(rows, particles)
+        np.add.at(force, at, entry["force"])
+        if "moment" in entry and len(moment):
+            np.add.at(moment, at, entry["moment"])
     return {
-        "particles": held,
-        "force": found.reactions[held],
-        "names": [names[p] for p in held.tolist()],
-        "moment": system.slots.moments(found.reactions, held),
+        "particles": rows,
+        "force": force,
+        "names": [names[p] for p in rows.tolist()],
+        "moment": moment,
+        "exact": exact.tolist(),
     }
 
 

@@ -1,4 +1,4 @@
-"""Utilisation: the part of its strength that each element uses."""
+"""Stress of lines and beams with a known section, and utilisation: the part of its strength that each element uses."""
 
 from __future__ import annotations
 
@@ -14,14 +14,23 @@ from hookean.forces.base import Places
 Floats = NDArray[np.float64]
 
 NAME = "utilisation"
-"""The column of results that has it."""
+STRESS = "stress"
+"""The columns of results that have both."""
 ROUND = ("rod", "tube")  # shapes of sections that have no corners, where stresses about both axes would add up
 LEAST = 1e-250  # strength [force] below which a force by it may have no value in float64
 
 
 def dimensions(kind: str) -> dict[str, str]:
     """The columns that a result may have of a force of this kind, with their dimensions."""
-    return {**KINDS[kind].outputs, NAME: ""}
+    stressed = {STRESS: "force/length^2"} if kind in STRESSES else {}
+    return {**KINDS[kind].outputs, **stressed, NAME: ""}
+
+
+def stress(force: Any, places: Places, columns: Mapping[str, Floats]) -> Floats | None:
+    """Normal stress (m,) [force/length^2] of elements whose section is known: T / A of cables and bars; of beams the
+    largest size at either end, |N| / A + |My| / Wy + |Mz| / Wz, of round ones |N| / A + (My^2 + Mz^2)^0.5 / W."""
+    rule = STRESSES.get(force.kind_name)
+    return None if rule is None or force.section is None else rule(force, places, columns)
 
 
 def utilisation(force: Any, places: Places, columns: Mapping[str, Floats]) -> Floats | None:
@@ -55,9 +64,15 @@ def _lines(force: Any, places: Places, columns: Mapping[str, Floats]) -> Floats 
 
 
 def _beams(force: Any, places: Places, columns: Mapping[str, Floats]) -> Floats | None:
-    strength = _strength(force, places)
-    if strength is None:
-        return None
+    strength, stressed = _strength(force, places), stress(force, places, columns)
+    return None if strength is None or stressed is None else np.asarray(stressed / strength)
+
+
+def _tensile(force: Any, places: Places, columns: Mapping[str, Floats]) -> Floats:
+    return np.asarray(columns["force"] / elastic.area(force, places))
+
+
+def _bent(force: Any, places: Places, columns: Mapping[str, Floats]) -> Floats | None:
     section = places.section(force.section)
     known, bent = section.properties, []
     for axis in "yz":
@@ -67,7 +82,7 @@ def _beams(force: Any, places: Places, columns: Mapping[str, Floats]) -> Floats 
         bent.append(moments / known.get(f"W{axis}", np.inf))
     # at each end; between them it is no larger, as moments are linear
     both = np.hypot(*bent) if section.shape in ROUND else bent[0] + bent[1]
-    return np.asarray((np.abs(columns["force"]) / known["area"] + both.max(axis=0)) / strength)
+    return np.asarray(np.abs(columns["force"]) / known["area"] + both.max(axis=0))
 
 
 def _sheets(force: Any, places: Places, columns: Mapping[str, Floats]) -> Floats | None:
@@ -90,3 +105,10 @@ RULES: dict[str, Callable[[Any, Places, Mapping[str, Floats]], Floats | None]] =
     "membrane": _sheets,
 }
 """By the kind of a force: how its elements use their strength."""
+
+STRESSES: dict[str, Callable[[Any, Places, Mapping[str, Floats]], Floats | None]] = {
+    "springs": _tensile,
+    "sliding_cable": _tensile,
+    "beam": _bent,
+}
+"""The same of the stress of a section."""

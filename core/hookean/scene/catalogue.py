@@ -161,7 +161,7 @@ def field_entry(name: str, field: FieldInfo, described: dict[str, Any]) -> dict[
 
 
 def _type(described: dict[str, Any]) -> str:
-    """`number`, `numbers` (one or one for each), `points`, `lines`, `indices`, `vector`, `text`, ..."""
+    """`number`, `numbers` (one or one for each), `text`, `texts` (likewise), `points`, `lines`, `indices`, ..."""
     options = [
         o for o in described.get("anyOf", [described]) if o.get("type") != "null" and "base64" not in str(o)[:200]
     ]
@@ -172,6 +172,8 @@ def _type(described: dict[str, Any]) -> str:
     depth, inner = 0, arrays[-1]
     while inner.get("type") == "array":
         depth, inner = depth + 1, inner.get("items", {})
+    if inner.get("type") == "string":
+        return "texts"
     if inner.get("type") == "integer" or "anyOf" in inner:
         return "indices"
     pairs = arrays[-1].get("items", {}).get("minItems") == 2

@@ -96,9 +96,35 @@ def assess(system: System, state: State, found: Balance, method: Solver | None =
         if moved is not None:
             return Equilibrium(Stability.STABLE, position_errors=_largest(moved, found))
     rest = _by_modes(system, state, free, found, method)
+    if rest.stability is Stability.MECHANISM and rest.soft_modes and _only_turns(system, state, free, found, rest):
+        # nothing moves along them, and nothing turns them: moments on them would not be in balance
+        reason = f"{rest.soft_modes} turns of hinged joints, which move nothing, meet no resistance"
+        errors = rest.beside
+        return Equilibrium(Stability.STABLE, reason, soft_modes=rest.soft_modes, position_errors=errors)
     if not certain or rest.stability is Stability.STABLE:
         return rest
     return Equilibrium(Stability.STABLE, position_errors=rest.position_errors, position_reason=rest.position_reason)
+
+
+def _only_turns(system: System, state: State, free: Floats, found: Balance, rest: Equilibrium) -> bool:
+    """Whether all that meets no resistance are turns of particles about themselves. These are motions that the part of
+    the tangent K of rotations alone does not resist: where K is at least 0, K_rr t = 0 means that K t = 0. Joints with
+    eccentric ends of beams, which swing, are left out."""
+    slots = system.slots
+    if not len(slots):
+        return False
+    turning = free.copy()
+    turning[: slots.count] = 0.0
+    for group in system.groups:
+        for end in range(2):
+            away = [i for i, name in enumerate(group.block.names) if name == ("offset_start", "offset_end")[end]]
+            if group.cls.turns and away:
+                swings = group.block.parameters[:, away].any(axis=1)
+                turning[group.block.indices[swings, group.cls.arity + end]] = 0.0
+    if not turning.any():
+        return False
+    turns = _by_modes(system, state, turning, found, None)
+    return turns.stability is Stability.MECHANISM and turns.soft_modes == rest.soft_modes
 
 
 def _certain(system: System, state: State, free: Floats, method: Solver | None) -> bool:

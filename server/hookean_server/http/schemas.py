@@ -160,7 +160,7 @@ SCHEMAS: dict[str, dict[str, Any]] = {
             "description": "Columns of each force of the scene, see GET /v1/forces",
             "items": _object(kind={"type": "string"}, name={"type": "string"}),
         },
-        reactions={**_AT, "description": "Forces and moments of the anchors on their particles"},
+        reactions={**_AT, "description": "Forces and moments of anchors and elastic supports on particles"},
         rotations={
             **_object(particles=_ARRAY, quaternions=_ARRAY),
             "description": "Particles at the ends of beams, and the unit quaternions w, x, y, z that turn them",
@@ -181,7 +181,7 @@ SCHEMAS: dict[str, dict[str, Any]] = {
             "additionalProperties": {"type": "array"},
         },
         stability={"enum": ["stable", "unstable", "mechanism", "unknown"]},
-        stability_reason={"type": "string", "description": "Why it is unstable or unknown; empty if stable"},
+        stability_reason={"type": "string", "description": "Why it is unstable or unknown, or joints that turn freely"},
         soft_particle={"type": ["integer", "null"], "description": "The particle that moves most in the softest mode"},
         soft_modes={
             "type": ["integer", "null"],

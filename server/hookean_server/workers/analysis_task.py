@@ -93,7 +93,9 @@ ANALYSES: dict[str, Analysis] = {
     "frequencies": Analysis(hookean.frequencies, Modes, ("frequencies", "modes", "effective_masses", "units")),
     "buckling": Analysis(hookean.buckling, Buckling, ("factors", "modes", "particles", "loads", "units")),
     "load-path": Analysis(hookean.load_path, LoadPath, ("factors", "particles", "stable", "critical_points", "units")),
-    "mechanisms": Analysis(hookean.mechanisms, Nothing, ("mechanisms", "self_stress_states", "modes", "units")),
+    "mechanisms": Analysis(
+        hookean.mechanisms, Nothing, ("mechanisms", "free_turns", "self_stress_states", "modes", "units")
+    ),
     "patterns": Analysis(hookean.cutting_patterns, Patterns, ("strips", "seams", "compensation", "table", "units")),
     "cables": Analysis(hookean.cables, Cables, ("cables", "table", "units")),
 }

@@ -165,8 +165,9 @@ export class Casing {
 /** A case, or the form, as a frame that can be drawn. */
 function frameOf({ form }: Solved, one: Case | null, topology: Topology, factor: number): Frame {
   const result = one?.result ?? form;
-  const { particles, force } = result.reactions;
-  const order = particles.map((_, i) => i).sort((a, b) => particles[a]! - particles[b]!);
+  const { particles, force, exact } = result.reactions;
+  const held = particles.map((_, i) => i).filter((i) => exact[i]); // as frames have them
+  const order = held.sort((a, b) => particles[a]! - particles[b]!);
   const moved = (point: Point, i: number) =>
     one ? form.particles[i]!.map((x, axis) => x + factor * one.displacements[i]![axis]!) : point;
   return {

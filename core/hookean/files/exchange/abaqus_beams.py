@@ -59,10 +59,9 @@ class BeamPart:
 
     def _releases(self, first: int) -> list[str]:
         rows = []
-        for part, count in zip(self.beams, self.counts, strict=True):
-            for end, axes in zip(("S1", "S2"), part.releases, strict=True):
+        for number, ends in enumerate(ends for part in self.beams for ends in part.releases.tolist()):
+            for end, axes in zip(("S1", "S2"), ends, strict=True):
                 codes = sorted(CODES[axis] for axis in axes)
                 code = "ALLM" if len(codes) == 3 else "-".join(codes)
-                rows += [f"{first + i}, {end}, {code}" for i in range(count)] if axes else []
-            first += count
+                rows += [f"{first + number}, {end}, {code}"] if axes else []
         return ["*RELEASE", *rows] if rows else []

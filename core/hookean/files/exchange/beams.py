@@ -22,14 +22,15 @@ COLUMNS = ("E", "G", "A", "Iy", "Iz", "J", "shear_y", "shear_z")
 class Beams:
     """The beams of one force: `pairs` (m, 2) of particles; `sections` (m, 8) with `COLUMNS`, shear areas 0 where
     shear does not count; `axes` (m, 3, 3) by rows x, y, z at the start; `offsets` (m, 2, 3) [length] of both ends;
-    `releases`, the axes about which the start and the end are hinged; `left`, what a file does not hold of them."""
+    `releases` (m, 2), the axes about which the start and the end of each are hinged; `left`, what a
+    file does not hold of them."""
 
     name: str
     pairs: Ints
     sections: Floats
     axes: Floats
     offsets: Floats
-    releases: tuple[str, str]
+    releases: NDArray[np.str_]
     left: tuple[str, ...]
 
     @classmethod
@@ -43,6 +44,7 @@ class Beams:
         chords = np.diff(system.x[pairs] + offsets, axis=1)[:, 0]
         left = [] if force.curvature == "drawn" else ["the bending of rods that are straight without stress"]
         left += [] if force.temperature is None else ["the temperature of beams"]
-        releases = (force.release_start, force.release_end)
+        ends = (force.release_start, force.release_end)
+        releases = np.stack([np.broadcast_to(np.asarray(axes), count) for axes in ends], axis=1)
         name = force.name or force.kind_name
         return cls(name, pairs, sections, drawn_frames(chords, force.normal), offsets, releases, tuple(left))

@@ -18,14 +18,15 @@ from hookean.files.optional import needed
 Floats = NDArray[np.float64]
 
 PREFIXES = {"mm": "MILLI", "cm": "CENTI", "dm": "DECI", "m": None, "km": "KILO"}
+ELASTIC = (*["IfcLinearStiffnessMeasure"] * 3, *["IfcRotationalStiffnessMeasure"] * 3)
 FORCES = {"N": None, "kN": "KILO", "MN": "MEGA"}
 
 
 def write(structure: Structure, target: Path) -> None:
     """Write an IFC4 structural analysis model: a curve member for each line element, named after its force, with its
     numbers in a property set, beams rigidly joined but for their releases, with their eccentric ends; a point
-    connection for each particle, held ones with their fixed axes and rotations and reaction; a point action for each
-    load.
+    connection for each particle, held ones with their fixed axes and rotations, or the stiffness of elastic supports,
+    and reaction; a point action for each load.
 
     Raises InputError for units that IFC's SI units do not have.
     """
@@ -65,7 +66,11 @@ class _Writer:
             make("IfcSIUnit", UnitType="FORCEUNIT", Name="NEWTON", Prefix=FORCES[str(s.units.force)]),
         ]
         torque = [make("IfcDerivedUnitElement", Unit=unit, Exponent=1) for unit in units]
-        units.append(make("IfcDerivedUnit", Elements=torque, UnitType="TORQUEUNIT"))
+        stiff = [make("IfcDerivedUnitElement", Unit=unit, Exponent=e) for unit, e in zip(units, (-1, 1), strict=True)]
+        units.append(make("IfcDerivedUnit", Elements=stiff, UnitType="LINEARSTIFFNESSUNIT"))
+        units += [
+            make("IfcDerivedUnit", Elements=torque, UnitType=kind) for kind in ("TORQUEUNIT", "ROTATIONALSTIFFNESSUNIT")
+        ]
         project = self.root("IfcProject", self.name, RepresentationContexts=[context],
                             UnitsInContext=make("IfcUnitAssignment", Units=units))  # fmt: skip
         place = make("IfcLocalPlacement", RelativePlacement=axes)
@@ -91,10 +96,13 @@ class _Writer:
         return self.file.create_entity("IfcProductDefinitionShape", Representations=[made])
 
     def _connection(self, context: Any, number: int, vertex: Any) -> Any:
-        held, condition = self.structure.held[number], None
-        if held.any() or self.structure.clamped[number].any():
-            axes = [*held.tolist(), *self.structure.clamped[number].tolist()]
-            fixed = [self.file.create_entity("IfcBoolean", bool(axis)) for axis in axes]
+        held, condition = [*self.structure.held[number], *self.structure.clamped[number]], None
+        elastic = self.structure.elastic[number].tolist()
+        if any(held) or any(elastic):
+            fixed = [
+                self.file.create_entity(*(("IfcBoolean", bool(fast)) if fast or not k else (kind, k)))
+                for fast, k, kind in zip(held, elastic, ELASTIC, strict=True)
+            ]
             condition = self.file.create_entity("IfcBoundaryNodeCondition", "support", *fixed)
         shape = self._shape(context, vertex, "Vertex")
         made = self.root("IfcStructuralPointConnection", f"particle {number}", Representation=shape,
@@ -102,7 +110,7 @@ class _Writer:
         if condition is not None:
             numbers, units = self.structure.reactions[number].tolist(), self.structure.units
             told = {f"reaction {a} [{units.force}]": c for a, c in zip("xyz", numbers, strict=True)}
-            if self.structure.clamped[number].any():
+            if any(held[3:]) or any(elastic[3:]):
                 numbers, unit = self.structure.reaction_moments[number].tolist(), units.of("force length")
                 told.update({f"reaction moment {a} [{unit}]": c for a, c in zip("xyz", numbers, strict=True)})
             self._properties(made, told)
@@ -142,11 +150,11 @@ class _Writer:
     def _join(self, joint: dict[str, Any], beams: Beams | None, row: int, end: int, vertex: Any) -> None:
         """The end of a member at its connection; of a beam with the rotations that are free, and its eccentricity."""
         make, kind = self.file.create_entity, "IfcRelConnectsStructuralMember"
-        if beams is not None and beams.releases[end]:
+        if beams is not None and beams.releases[row, end]:
             x, _, z = beams.axes[row]
             own = make("IfcAxis2Placement3D", Location=make("IfcCartesianPoint", Coordinates=(0.0, 0.0, 0.0)),
                        Axis=self._direction(z), RefDirection=self._direction(x))  # fmt: skip
-            fixed = [True] * 3 + [axis not in beams.releases[end] for axis in "xyz"]
+            fixed = [True] * 3 + [axis not in beams.releases[row, end] for axis in "xyz"]
             free = make("IfcBoundaryNodeCondition", "release", *(make("IfcBoolean", axis) for axis in fixed))
             joint = {**joint, "AppliedCondition": free, "ConditionCoordinateSystem": own}
         if beams is not None and beams.offsets[row, end].any():

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from hookean.files.exchange.beams import Beams
 from hookean.forces.beam import Beam
 from hookean.forces.springs import Springs
+from hookean.forces.support import Support
 from hookean.running.result import Result
 from hookean.system.system import System, compile
 from hookean.values.units import Units
@@ -44,8 +45,9 @@ class Lines:
 class Structure:
     """A result for other programs. All of `points` (n, 3) [length], `displacements` (n, 3) [length] from the start,
     `loads` and `reactions` (n, 3) [force], `moments` and `reaction_moments` (n, 3) [force length] of both, `held`
-    (n, 3) axes, `clamped` (n, 3) rotations about axes; `faces` (m, 4) of meshes by name, in particles; `beams` of each
-    force that has some; `others` are the names of forces between particles that are neither."""
+    (n, 3) axes, `clamped` (n, 3) rotations about axes, `elastic` (n, 6) the stiffness of elastic supports along and
+    about axes [force/length, force length]; `faces` (m, 4) of meshes by name, in particles; `beams` of each force that
+    has some; `others` are the names of forces between particles that are neither."""
 
     points: Floats
     displacements: Floats
@@ -60,6 +62,7 @@ class Structure:
     units: Units
     beams: tuple[Beams, ...] = ()
     others: tuple[str, ...] = ()
+    elastic: Floats = field(default_factory=lambda: np.zeros((0, 6)))
 
     @classmethod
     def of(cls, result: Result, system: System | None = None) -> Structure:
@@ -97,6 +100,7 @@ class Structure:
                 if isinstance(force, Beam) and np.size(entry.get("particles", ()))
             ),
             tuple(_others(result)),
+            _elastic(result, count),
         )
 
     @property
@@ -121,6 +125,18 @@ def _lines(system: System, result: Result) -> list[Lines]:
         name = force.name or force.kind_name
         free = isinstance(force, Springs) and _one_way(force)
         found.append(Lines(name, force.kind_name, pairs, columns, dict(type(force).outputs), stiffness, rest, free))
+    return found
+
+
+def _elastic(result: Result, count: int) -> Floats:
+    """The stiffness (count, 6) of elastic supports along and about the axes of space."""
+    assert result.scene is not None
+    found = np.zeros((count, 6))
+    for force, entry in zip(result.scene.forces, result.forces, strict=True):
+        if isinstance(force, Support) and "particles" in entry:
+            at = np.asarray(entry["particles"]).reshape(-1)
+            for first, given in ((0, force.stiffness), (3, force.rotation_stiffness)):
+                np.add.at(found[:, first : first + 3], at, np.broadcast_to(given, (len(at), 3)))
     return found
 
 
