@@ -62,7 +62,8 @@ class Linearised:
         self.found, self.orders = found, orders
         self.goals = (by_place @ found.basis).tocsr()  # G (k, r)
         self.direct = ((direct + by_place @ moves) @ diags(scale)).tocsc()  # D (k, u)
-        self.pushes = (found.basis.T @ (forces - found.tangent @ moves) @ diags(scale)).tocsc()  # F (r, u)
+        pushes = found.counted(forces) - found.response @ moves
+        self.pushes = (found.basis.T @ pushes @ diags(scale)).tocsc()  # F (r, u)
 
     def transposed(self, r: Floats) -> Floats:
         """The Jacobian's transpose times residuals (k,): by the adjoint."""
