@@ -545,7 +545,8 @@ def test_real_files_without_a_recipe(folder: Path, stem: str) -> None:
 
 
 def test_a_scene_in_json_is_relaxed_without_what_reads_models(folder: Path) -> None:
-    """The quick way from the shell to an answer: no rhino3dm, no scipy, nothing for pictures or the service."""
+    """The quick way from the shell to an answer: no rhino3dm, no scipy, nothing for pictures or the service, and of
+    the forces those that the scene has."""
     scene = Scene(
         forces=[
             {"kind": "springs", "lines": [[[i, 0, 0], [i + 1, 0, 0]] for i in range(4)]},
@@ -556,9 +557,10 @@ def test_a_scene_in_json_is_relaxed_without_what_reads_models(folder: Path) -> N
     (folder / "scene.json").write_text(scene.canonical)
     code = (
         "import sys, hookean.cli\n"
+        "others = ('shell', 'beam', 'collide', 'fits', 'rigid_body')\n"
         "try:\n    hookean.cli.app(['relax', 'scene.json'])\n"
         "except SystemExit as end:\n    print(end.code)\n"
-        "heavy = ('rhino3dm', 'scipy', 'matplotlib', 'fastapi', 'compas')\n"
+        "heavy = ('rhino3dm', 'scipy', 'matplotlib', 'fastapi', 'compas', *map('hookean.forces.{}'.format, others))\n"
         "print('loaded:', [m for m in heavy if m in sys.modules])\n"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=HANG, cwd=folder)

@@ -11,7 +11,7 @@ from scipy.sparse.csgraph import connected_components
 
 from hookean import Result, Scene, relax
 from hookean.forces import KINDS
-from hookean.system.components import sizes
+from hookean.system.components import linked, sizes
 from hookean.system.system import compile
 from serving import SOAK
 
@@ -428,3 +428,12 @@ def test_crowds_of_two_forces_are_two_components(kind: str) -> None:
     assert len(np.intersect1d(parts.label[1:n], parts.label[n:])) == 0
     assert (parts.label[n:] == parts.label[n]).all() and parts.joined.all()
     assert not parts.supported[parts.label[n]] and parts.supported[parts.label[n - 1]]
+
+
+@pytest.mark.parametrize("links", [0, 3, 30, 90])
+def test_links_connect_points_as_graphs_do(links: int) -> None:
+    """Two points have one label if a path of links joins them: as the components of a graph, which SciPy finds."""
+    pairs = np.random.default_rng(links).integers(0, 60, (links, 2))
+    expected = connected_components(coo_matrix((np.ones(links), (pairs[:, 0], pairs[:, 1])), (60, 60)))[1]
+    label = linked(pairs, 60)
+    assert np.array_equal(label[:, None] == label, expected[:, None] == expected)

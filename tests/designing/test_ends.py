@@ -45,6 +45,19 @@ def test_a_problem_of_constraints_alone_ends_at_a_shape_that_meets_them() -> Non
     assert found.status == "converged" and found.result.particles[1, 2] <= -0.9 + 1e-6
 
 
+def test_methods_that_make_no_headway_hand_over(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The sags for which two goals conflict least: d = (0.7 + 0.3) / 2, by the method that goes on; also where SLSQP
+    is asked for and there are no constraints."""
+    from hookean.designing import methods
+
+    for name, value in (("WANDERS", 1), ("SLOW", 2), ("polish", lambda search: None)):
+        monkeypatch.setattr(methods, name, value)
+    for method in ("slsqp", "least_squares"):
+        found = design(string(), [REST], [{**PLACE, "target": -0.7}, {**PLACE, "target": -0.3}], method=method)
+        assert (found.status, found.method) == ("converged", "l-bfgs-b")
+        assert found.result.particles[1, 2] == pytest.approx(-0.5, rel=1e-5)
+
+
 def test_of_two_limits_at_one_value_the_one_that_holds_has_the_gain() -> None:
     """The objective (z + 0.7)^2 at z = -1 falls by 0.6 as the upper limit gives way by 1, and not by the lower one; the
     limit is met to 1e-6, the slope of the objective to twice that."""

@@ -64,3 +64,21 @@ def test_gains_of_goals_sum_to_those_of_the_bounds() -> None:
     assert sum(shares) == pytest.approx(found.variables[0]["gain"], rel=1e-9)
     assert not any(entry["conflicts"] for entry in found.goals)
     assert "gains" in found.to_dict()["goals"][0]
+
+
+def test_an_answer_says_in_a_line_each_how_it_ended() -> None:
+    """Bounds, goals that are only minimised, limits and units; several of a kind have numbers, in conflicts too."""
+    place = {"kind": "position", "particles": [1], "axes": "z"}
+    twice = [{**place, "target": -0.7}, {**place, "target": -0.3}]
+    path = {"kind": "load_path", "force": "string", "weight": 1e-3}
+    limit = {"kind": "length", "force": "string", "elements": [0], "upper": 2.0}
+    found = design({"scene": cable(), "variables": [FREE], "goals": [*twice, path], "constraints": [limit]})
+    first, *lines = str(found).splitlines()
+    assert first.startswith("Design: converged.") and "conflict: position, position 2" in first
+    assert [line.split(":")[0].strip() for line in lines] == [
+        "string.rest_length", "goal position", "goal position 2", "goal load_path", "constraint length",
+    ]  # fmt: skip
+    assert lines[1].endswith(" m, target -0.7 m") and lines[3].endswith(" N m, minimised")
+    assert lines[4].endswith(" m, met") and "bound" not in lines[0]
+    bound = design({"scene": cable(), "variables": [{**FREE, "upper": 1.0}], "goals": [twice[0]]})
+    assert str(bound).splitlines()[1].endswith(": 1 m (at a bound)")

@@ -124,10 +124,8 @@ def said_of(scene: dict[str, Any]) -> list[str]:
 def test_a_smooth_film_has_no_kink(height: float, far: float) -> None:
     """The area of triangles is smooth. By the directions of its particles' steps some forces hardly change, and across
     a flat film they change by what is of second order alone; steps of 1e-7 of a scene that is 60,000 times as large as
-    a triangle bend forces by a part of 6e-3 as well, beyond what sides of a kink may differ by. What is reported is
-    that the height of a vertex depends on where it lies in a film that slopes."""
-    said = said_of(cloth(20, height, {"kind": "soapfilm", "tension": 2.0}, far=far))
-    assert len(said) == (height > 0.0) and all("where in a soap film its vertices lie" in each for each in said)
+    a triangle bend forces by a part of 6e-3 as well, beyond what sides of a kink may differ by."""
+    assert not said_of(cloth(20, height, {"kind": "soapfilm", "tension": 2.0}, far=far))
 
 
 def test_cloth_that_is_about_to_be_slack_is_reported() -> None:

@@ -70,3 +70,13 @@ def test_a_search_that_is_at_no_minimum_does_not_say_converged() -> None:
     found = hookean.design(case.problem())
     assert found.objective < 1.352e8
     assert found.status != "converged" or Check(case, found).left() < 1e-4
+
+
+@pytest.mark.soak
+@pytest.mark.parametrize("twist", ["plain", "scaled"])
+def test_goals_that_conflict_much_do_not_end_early(twist: str) -> None:
+    """Where much of every goal is left, least squares go on slowly: the end is that of L-BFGS-B from the start."""
+    case = case_of(112, twist)
+    found, other = hookean.design(case.problem()), hookean.design(case.problem(method="l-bfgs-b"))
+    assert (found.status, other.status) == ("converged", "converged")
+    assert found.objective <= other.objective * (1.0 + 1e-5)

@@ -185,33 +185,10 @@ class Stop:
 
 def _print(found: Design) -> None:
     typer.echo(found.message)
-
-    def told(entry: dict[str, Any], value: Any) -> str:
-        unit = found.result.units.of(entry["unit"])
-        return f"{_numbers(value)} {unit}".rstrip()
-
-    for entry in found.variables:
-        typer.echo(f"  {entry['name']}: {told(entry, entry['value'])}{' (at a bound)' * _any(entry['at_bound'])}")
-    for entry in found.goals:
-        target = "minimised" if entry["target"] is None else f"target {told(entry, entry['target'])}"
-        typer.echo(f"  goal {entry['name']}: {told(entry, entry['value'])}, {target}")
-    for entry in found.constraints:
-        met = "met" if entry["met"] else "not met"
-        typer.echo(f"  constraint {entry['name']}: {told(entry, entry['value'])}, {met}")
+    for line in found.lines():
+        typer.echo(f"  {line}")
     for warning in found.warnings:
         typer.echo(f"hookean: {warning}", err=True)
-
-
-def _any(value: Any) -> bool:
-    import numpy as np
-
-    return bool(np.any(value))
-
-
-def _numbers(value: Any) -> str:
-    from hookean.designing.answer import shown
-
-    return str(shown(value))
 
 
 app = taking(Options, run)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import Any
@@ -49,12 +50,25 @@ class Design:
     warnings: list[str] = field(default_factory=list)
 
     def __repr__(self) -> str:
-        lines = [f"Design: {self.status}. {self.message}"]
-        lines += [f"  {entry['name']}: {shown(entry['value'])}" for entry in self.variables]
-        lines += [
-            f"  goal {entry['name']}: {shown(entry['value'])}, target {shown(entry['target'])}" for entry in self.goals
-        ]
-        return "\n".join(lines)
+        return "\n".join([f"Design: {self.status}. {self.message}", *(f"  {line}" for line in self.lines())])
+
+    def lines(self) -> list[str]:
+        """A line for a person on each variable, goal and constraint."""
+
+        def told(entry: dict[str, Any], value: Any) -> str:
+            return f"{shown(value)} {self.result.units.of(entry['unit'])}".rstrip()
+
+        found = []
+        for entry in self.variables:
+            bound = " (at a bound)" if np.any(entry["at_bound"]) else ""
+            found.append(f"{entry['name']}: {told(entry, entry['value'])}{bound}")
+        for entry in self.goals:
+            target = "minimised" if entry["target"] is None else f"target {told(entry, entry['target'])}"
+            found.append(f"goal {entry['name']}: {told(entry, entry['value'])}, {target}")
+        for entry in self.constraints:
+            met = "met" if entry["met"] else "not met"
+            found.append(f"constraint {entry['name']}: {told(entry, entry['value'])}, {met}")
+        return found
 
     def to_dict(self) -> dict[str, Any]:
         """As plain lists and numbers, by the names of the HTTP answer."""
@@ -75,6 +89,18 @@ class Design:
 
 def shown(value: Any) -> str:
     """A few numbers as text, how many there are where these are not all."""
-    flat = np.atleast_1d(np.asarray(np.nan if value is None else value, dtype=np.float64)).ravel()
+    flat = np.atleast_1d(np.asarray(value, dtype=np.float64)).ravel()
     shown = ", ".join(f"{v:.4g}" for v in flat[:6])
     return shown if len(flat) <= 6 else f"{shown}, ... ({len(flat)})"
+
+
+def once(names: Iterable[str]) -> list[str]:
+    """The names, with a number behind those that occurred before."""
+    found: list[str] = []
+    for name in names:
+        number = 2
+        title = name
+        while title in found:
+            title, number = f"{name} {number}", number + 1
+        found.append(title)
+    return found

@@ -1,7 +1,8 @@
 """The equilibrium of a scene as its variables change, with the tangent there in factors.
 
 At rest f(x, u) = 0 on the free axes. A change du of the unknowns moves held particles by H du and the others by dx,
-K dx = (df/du - K_fh H) du, with K = -df/dx, the tangent stiffness. Films move across themselves alone.
+K dx = (df/du - K_fh H) du, with K = -df/dx, the tangent stiffness. Films move across themselves alone, and their
+vertices so that they stay even (see `even`).
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.designing.cycles import LEFT, Cycles
+from hookean.designing.even import Even, evenness
 from hookean.designing.factors import Factored, Orders, Patterned
 from hookean.designing.resting import resting
 from hookean.forces.base import lengths
@@ -58,12 +60,14 @@ class Equilibrium:
         *,
         once: bool = False,
         method: Solver | None = None,
+        even: Even | None = None,
     ) -> None:
         self.system, self.state, self._result, self.once, self._method = system, state, result, once, method
+        self.even = even
         self.orders = orders or Orders()
         self._tangent = None if once else tangent(system, state)  # later the system has other values
         self.resting = resting(system, state)
-        self.basis = _basis(system, state, self.resting.motions)
+        self.basis = _basis(system, state, self.resting.motions, even is not None)
         self._factor: Factored | None = None
         self.yielded: list[str] = []  # kinds of forces that have yielded on the way here
 
@@ -95,11 +99,22 @@ class Equilibrium:
             self._tangent = tangent(self.system, self.state)
         return self._tangent
 
+    @cached_property
+    def response(self) -> Any:
+        """By what motions change what is 0 at rest: the tangent; of even films that and how their vertices follow."""
+        return self.tangent if self.even is None else self.even.tangent(self.system, self.state, self.tangent)
+
+    def counted(self, forces: Any) -> Any:
+        """The part of forces (3n,) or (3n, u) that is 0 at rest."""
+        if self.even is None:
+            return forces
+        return self.even.counts(self.system, self.x, self.state.free) @ forces
+
     def resisted(self, y: Floats, places: Ints) -> Floats:
         """K^T y (3n,) at some coordinates, of all axes, for a motion y (3n,); 0 at the others."""
         total = np.zeros(len(y))
-        if self._tangent is not None:
-            total[places] = (self._tangent.T @ y)[places]
+        if self._tangent is not None or self.even is not None:
+            total[places] = (self.response.T @ y)[places]
             return total
         for axes, blocks in _blocks(self.system, self.state, np.unique(places // 3)):
             total += np.bincount(axes.ravel(), np.einsum("eab,ea->eb", blocks, y[axes]).ravel(), len(total))
@@ -110,7 +125,12 @@ class Equilibrium:
     @cached_property
     def _cycles(self) -> Cycles | None:
         """What solves without factors."""
-        if not self.once or self.resting.motions or len(self.basis.indices) < np.count_nonzero(self.state.free):
+        if (
+            not self.once
+            or self.even
+            or self.resting.motions
+            or len(self.basis.indices) < np.count_nonzero(self.state.free)
+        ):
             return None
         cycles = Cycles(self.system, self.state, self._method)
         return cycles if cycles.usable else None
@@ -119,7 +139,7 @@ class Equilibrium:
     def _patterned(self) -> Patterned | None:
         """What solves by the solver's pattern, where that has all free motions and no others."""
         known = None if self._method is None else self._method.pattern
-        if not self.once or known is None or self.system.contacts or not self.symmetric:
+        if not self.once or self.even or known is None or self.system.contacts or not self.symmetric:
             return None
         found = Patterned(self.system, self.state, known)
         usable = found.factor is not None and len(found.pattern.dofs) == self.basis.shape[1]
@@ -128,12 +148,12 @@ class Equilibrium:
     @property
     def symmetric(self) -> bool:
         """Whether forces come from an energy, so that the tangent is symmetric."""
-        return all(group.cls.conservative or group.cls.constant for group in self.system.groups)
+        return self.even is None and all(g.cls.conservative or g.cls.constant for g in self.system.groups)
 
     @cached_property
     def reduced(self) -> Any:
         """The tangent (r, r) on the free motions, without entries that are rounding."""
-        whole = (self.basis.T @ self.tangent @ self.basis).tocsc()
+        whole = (self.basis.T @ self.response @ self.basis).tocsc()
         size = np.abs(whole.diagonal())
         columns = np.repeat(np.arange(whole.shape[1]), np.diff(whole.indptr))
         whole.data[np.abs(whole.data) <= NOTHING * np.minimum(size[whole.indices], size[columns])] = 0.0
@@ -215,7 +235,25 @@ def settle(system: System, state: State, orders: Orders | None = None, *, once: 
         found, part = _polished(found)
         if part * result.residual <= max(TIGHT, ROUNDING * result.rounding_floor):
             break
+    found = _evened(found)
     found.yielded = _yielded(system, state, before)
+    return found
+
+
+def _evened(found: Equilibrium) -> Equilibrium:
+    """That of films with their vertices where they are even, if there is one."""
+    system, state, orders = found.system, found.state, found.orders
+    even = evenness(system, state.free) if orders.even is None else orders.even
+    if even is None or not found.converged:
+        return found
+    start, orders.even = state.x.copy(), even
+    if even.reach(system, state, lambda: tangent(system, state)):
+        there = state.x.copy()
+        result, method = _relaxed(system, state)
+        if result.converged and lengths(state.x - there).max(initial=0.0) <= SLIGHT * system.size:
+            state.x = there
+            return Equilibrium(system, state, result, orders, once=found.once, method=method, even=even)
+    state.x = start
     return found
 
 
@@ -281,9 +319,9 @@ def _left(system: System, state: State) -> Floats:
     return left
 
 
-def _basis(system: System, state: State, resting: dict[int, Floats]) -> Any:
-    """The free motions (3n, r): free axes of particles that something holds; of films the axes that count; along the
-    floor of what rests on it."""
+def _basis(system: System, state: State, resting: dict[int, Floats], even: bool) -> Any:
+    """The free motions (3n, r): free axes of particles that something holds; of films the axes that count, unless they
+    are `even`; along the floor of what rests on it."""
     from scipy.sparse import csc_matrix
 
     parts = system.components(state)
@@ -291,7 +329,7 @@ def _basis(system: System, state: State, resting: dict[int, Floats]) -> Any:
     loose = np.flatnonzero(parts.label >= 0)
     free[loose[~parts.joined[parts.label[loose]]]] = 0.0
     n = len(free)
-    if system.films is None:
+    if system.films is None or even:
         free[list(resting)] = 0.0
         axes = np.flatnonzero(free.ravel() > 0.0)
         basis = csc_matrix((np.ones(len(axes)), (axes, np.arange(len(axes)))), shape=(3 * n, len(axes)))

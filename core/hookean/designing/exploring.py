@@ -7,7 +7,7 @@ Samples are from scipy.stats.qmc: a grid, a Latin hypercube (McKay, Beckman and 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from concurrent.futures import Executor
 from dataclasses import dataclass, field
 from functools import partial
@@ -16,6 +16,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean.designing.answer import once
 from hookean.designing.checks import checked
 from hookean.designing.equilibrium import Equilibrium, settle
 from hookean.designing.problem import Problem
@@ -221,15 +222,3 @@ def _called(search: Search) -> tuple[list[str], list[str]]:
         names.append((goal.name or str(goal.quantity.kind_name)) + missed)
         dimensions.append(units.of(goal.quantity.unit) if goal.quantity.unit else "-")
     return once(names), dimensions
-
-
-def once(names: Iterable[str]) -> list[str]:
-    """The names, with a number behind those that occurred before."""
-    found: list[str] = []
-    for name in names:
-        number = 2
-        title = name
-        while title in found:
-            title, number = f"{name} {number}", number + 1
-        found.append(title)
-    return found

@@ -12,6 +12,7 @@ from hookean.linear.pattern import Pattern
 from hookean.linear.sparse_factors import Factor, Factors
 
 if TYPE_CHECKING:
+    from hookean.designing.even import Even
     from hookean.system.state import State
     from hookean.system.system import System
 
@@ -21,11 +22,12 @@ Ints = NDArray[np.int64]
 
 class Orders:
     """Orders of elimination that earlier factors had, for matrices of the same pattern. `way`: which kind of factors
-    the last system of a step had."""
+    the last system of a step had; `even`: what spreads the vertices of films."""
 
     def __init__(self) -> None:
         self._kept: list[Factors] = []
         self.way = 0
+        self.even: Even | None = None
 
     def factor(self, matrix: Any) -> Factor | None:
         """A symmetric matrix in factors; None where it is singular."""

@@ -27,6 +27,7 @@ from hookean.designing.factors import Orders
 from hookean.designing.quantities.base import Quantity
 from hookean.designing.unknowns import Unknowns
 from hookean.linear.sparse_factors import supernodal
+from hookean.system.components import linked
 
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
@@ -61,7 +62,8 @@ class Linearised:
         self.found, self.orders = found, orders
         self.goals = (by_place @ found.basis).tocsr()  # G (k, r)
         self.direct = ((direct + by_place @ moves) @ diags(scale)).tocsc()  # D (k, u)
-        self.pushes = (found.basis.T @ (forces - found.tangent @ moves) @ diags(scale)).tocsc()  # F (r, u)
+        pushes = found.counted(forces) - found.response @ moves
+        self.pushes = (found.basis.T @ pushes @ diags(scale)).tocsc()  # F (r, u)
 
     def transposed(self, r: Floats) -> Floats:
         """The Jacobian's transpose times residuals (k,): by the adjoint."""
@@ -124,13 +126,9 @@ class Linearised:
 
     def _seen(self) -> NDArray[np.int64]:
         """Free motions that a goal depends on."""
-        from scipy.sparse import csr_matrix
-        from scipy.sparse.csgraph import connected_components
-
-        net = csr_matrix(self.found.reduced)
-        net.eliminate_zeros()
-        count, label = connected_components(net, directed=False)
-        read = np.zeros(count, dtype=bool)
+        net = self.found.reduced.tocoo()
+        label = linked(np.stack([net.row, net.col], axis=1)[net.data != 0.0], net.shape[0])
+        read = np.zeros(net.shape[0], dtype=bool)
         read[label[np.unique(self.goals.indices)]] = True
         return np.flatnonzero(read[label])
 

@@ -26,7 +26,7 @@ Floats = NDArray[np.float64]
 NO_STEP = "The search found no step that leads further; this is the best so far."
 WANDERS = 100  # iterations of SLSQP, after which it makes no headway
 MET = 1e-18  # part of the first objective, residuals 1e-9 of the first: goals are met
-SLOW = 50  # evaluations of least squares, after which second derivatives are asked for
+SLOW = 30  # evaluations of least squares, after which second derivatives are asked for
 ATTEMPTS = 4  # of a search with constraints, each from the best so far
 FLAT = 1e-30  # slopes of small weights or units are small: only none at all ends a search
 ROUNDING = 1e-13  # part of the objective: less is no change
@@ -59,10 +59,14 @@ def _least_squares(search: Search) -> Ended:
         if status == 0 and taken >= settings.max_iterations:
             return taken, DesignStatus.MAX_ITERATIONS, ""
         if search.best[1] <= MET * search.first_value:
-            break
+            return taken, DesignStatus.CONVERGED, ""
         polish(search)  # where goals conflict, steps by first derivatives alone lead on slowly
+        if status == 0 and not at_minimum(search):
+            break
         start = np.clip(search.best[2], lower, upper)
-    return taken, DesignStatus.CONVERGED, ""
+    if at_minimum(search):
+        return taken, DesignStatus.CONVERGED, ""
+    return _lbfgsb(search, taken)  # learns how much goals conflict, of which derivatives of residuals know nothing
 
 
 def _trust_region(
@@ -103,11 +107,12 @@ def _augmented(search: Search, taken: int = 0) -> Ended:
     return iterations, ended, NO_STEP if ended is DesignStatus.STALLED else ""
 
 
-def _lbfgsb(search: Search) -> Ended:
+def _lbfgsb(search: Search, taken: int = 0) -> Ended:
     """Again from the best so far where it ends at no minimum: one poor step is enough for that."""
     from scipy.optimize import minimize
 
-    settings, taken, start, before = search.problem.settings, 0, np.zeros(search.unknowns.count), np.inf
+    search.used = "l-bfgs-b"
+    settings, start, before = search.problem.settings, search.best[2], np.inf
     size = abs(search.objective(start)) or 1.0
     while True:
         found = minimize(
@@ -194,9 +199,7 @@ def _slsqp(search: Search) -> Ended:
             return iterations, DesignStatus.MAX_ITERATIONS, ""
         if found.nit > WANDERS and not at_minimum(search):
             polish(search)
-            if at_minimum(search):
-                return iterations, DesignStatus.CONVERGED, ""
-            return _augmented(search, iterations)
+            break
         if search.best[0] > 0.0:
             iterations += nearer(search)
             if search.best[0] > 0.0:
@@ -207,7 +210,7 @@ def _slsqp(search: Search) -> Ended:
         before, start = search.best[1], search.best[2].copy()  # what it measures by was the objective at its start
     if at_minimum(search):
         return iterations, DesignStatus.CONVERGED, ""
-    return _augmented(search, iterations) if search.aims.limits else (iterations, DesignStatus.STALLED, NO_STEP)
+    return _augmented(search, iterations) if search.aims.limits else _lbfgsb(search, iterations)
 
 
 METHODS: dict[str, Callable[[Search], Ended]] = {

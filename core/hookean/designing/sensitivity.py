@@ -80,7 +80,7 @@ def sensitivity(problem: Any, goals: Any = None, variables: Any = None) -> Sensi
         raise InputError("/scene", f"the tangent at the equilibrium is singular; {found.result.message}")
     parts = [gradient[s].reshape(v.shape) for v, s in zip(unknowns.variables, unknowns.slices, strict=True)]
     said = warnings(found) + unknowns.differing
-    if found.system.films is not None:
+    if found.system.films is not None and found.even is None:
         said += _along(found, _summed(found, unknowns, quantities, weights)[0])
     if unknowns.clipped:
         said.append(f"{unknowns.clipped} values of the scene are beyond the bounds; the shape has them at the bounds")
@@ -95,7 +95,7 @@ def gradients(
     adjoint = found.solve(by_place, transposed=True)
     if len(led := unknowns.led):
         by_unknown += unknowns.lead(by_place - found.resisted(adjoint, led))
-    return np.asarray(unknowns.work(found, adjoint.reshape(-1, 3)) + by_unknown)
+    return np.asarray(unknowns.work(found, found.counted(adjoint).reshape(-1, 3)) + by_unknown)
 
 
 def _summed(
@@ -120,7 +120,7 @@ def jacobian(found: Equilibrium, unknowns: Unknowns, quantities: list[tuple[Quan
     slopes = [quantity.slopes(found, unknowns, pointer) for quantity, pointer in quantities]
     by_place, by_unknown = vstack([s[0] for s in slopes]).tocsr(), vstack([s[1] for s in slopes]).tocsr()
     forces, moves = unknowns.slopes(found)
-    right = (forces - found.tangent @ moves).tocsc()
+    right = (found.counted(forces) - found.response @ moves).tocsc()
     total = by_unknown.toarray() + (by_place @ moves).toarray()
     if by_place.shape[0] < unknowns.count:
         solved = np.array([found.solve(row, transposed=True) for row in by_place.toarray()]).reshape(by_place.shape)

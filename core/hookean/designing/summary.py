@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hookean.designing.answer import Design, DesignStatus
+from hookean.designing.answer import Design, DesignStatus, once
 from hookean.designing.gains import Gains, gains
 from hookean.designing.limits import AT_BOUND, LIMIT, beyond
 from hookean.designing.second_look import UNMOVED, not_found_again
@@ -94,7 +94,7 @@ def _held(variables: Entries, broken: list[str]) -> list[str]:
 
 
 def _names(parts: Any) -> list[str]:
-    return [part.name or str(part.quantity.kind_name) for part in parts]
+    return once(part.name or str(part.quantity.kind_name) for part in parts)
 
 
 def _variables(search: Search, values: Floats, gained: Gains | None) -> Entries:

@@ -1,22 +1,64 @@
-"""All forces, found by walking this folder: a file here with a Force class is a force everywhere."""
+"""All forces, found by the files of this folder: a file here with a Force class is a force everywhere.
+
+A file has the name of its kind, so that a program loads the forces that it uses and no others.
+"""
 
 from __future__ import annotations
 
 import importlib
-import pkgutil
+from collections.abc import Iterator, Mapping
+from importlib.util import find_spec
+from pkgutil import iter_modules
+from typing import Any
 
 from hookean.forces.base import Block, Force, Places
 
-KINDS: dict[str, type[Force]] = {}
+
+class _Kinds(Mapping[str, type[Force]]):
+    """Every force class by its kind, in the order of file names: one is loaded when it is asked for, all to go through
+    them."""
+
+    def __init__(self) -> None:
+        self._known: dict[str, type[Force] | None] = {}
+
+    def __getitem__(self, kind: str) -> type[Force]:
+        if kind not in self._known:
+            there = kind.isidentifier() and find_spec(f"{__name__}.{kind}") is not None
+            self._known[kind] = _class_in(kind) if there else None
+        found = self._known[kind]
+        if found is None:
+            raise KeyError(kind)
+        return found
+
+    def __iter__(self) -> Iterator[str]:
+        return iter([found.name for found in iter_modules(__path__) if found.name in self])
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self)
+
+
+def _class_in(file: str) -> type[Force] | None:
+    """The force of a file, if it has one."""
+    module = importlib.import_module(f"{__name__}.{file}")
+    for value in vars(module).values():
+        own = isinstance(value, type) and value.__module__ == module.__name__
+        kind = value.model_fields.get("kind") if own and issubclass(value, Force) else None
+        if kind is not None and kind.default and not value.variant:
+            if kind.default != file:
+                raise TypeError(f"{file}.py has the force {kind.default!r}: call the file {kind.default}.py")
+            return value  # type: ignore[no-any-return]
+    return None
+
+
+KINDS: Mapping[str, type[Force]] = _Kinds()
 """Every force class by its kind, in the order of file names."""
 
-for _found in pkgutil.iter_modules(__path__):
-    _module = importlib.import_module(f"{__name__}.{_found.name}")
-    for _value in vars(_module).values():
-        _own = isinstance(_value, type) and _value.__module__ == _module.__name__
-        _kind = _value.model_fields.get("kind") if _own and issubclass(_value, Force) else None
-        if _kind is not None and _kind.default and not _value.variant:
-            KINDS[_value.kind_name] = _value
 
-globals().update({cls.__name__: cls for cls in KINDS.values()})
-__all__ = ["KINDS", "Block", "Force", "Places", *sorted(cls.__name__ for cls in KINDS.values())]
+__all__ = ["KINDS", "Block", "Force", "Places"]
+
+
+def __getattr__(name: str) -> Any:
+    for cls in KINDS.values() if name[0].isupper() else ():  # an import of a file asks for its name, too
+        if cls.__name__ == name:
+            return cls
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -76,7 +76,8 @@ def page() -> str:
 
 
 def exports(text: str) -> str:
-    """The text of `hookean/__init__.py` with the forces there are: as imports for type checkers, and in `__all__`."""
+    """The text of `hookean/__init__.py` with the forces there are: as imports for type checkers, with the files that
+    they are loaded from, and in `__all__`."""
     classes: list[type[Force]] = [*KINDS.values(), Force]
     before = re.findall(r"from hookean\.forces\.\w+ import (\w+)", text)
     lines = text.splitlines(keepends=True)
@@ -88,7 +89,11 @@ def exports(text: str) -> str:
     names = {line for line in lines[begin:end] if line.strip(' ",\n') not in before}
     names |= {f'    "{cls.__name__}",\n' for cls in classes}
     listed = sorted(names, key=lambda line: (line[5].islower(), line))  # classes come before functions
-    return "".join([*lines[:first], *sorted(imports), *lines[last:begin], *listed, *lines[end:]])
+    homes = [line for line in lines[last:begin] if '": "forces.' not in line]
+    files = [f'    "{cls.__name__}": "{cls.__module__.removeprefix("hookean.")}",\n' for cls in classes]
+    at = homes.index("_HOMES = {\n") + 1
+    loaded = [*homes[:at], *sorted(files), *homes[at:]]
+    return "".join([*lines[:first], *sorted(imports), *loaded, *listed, *lines[end:]])
 
 
 def write_exports() -> None:

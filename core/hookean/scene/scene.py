@@ -6,7 +6,7 @@ import hashlib
 import json
 from collections.abc import Mapping
 from functools import cached_property
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self, Union
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,10 +38,8 @@ from hookean.values.mesh import Mesh
 from hookean.values.sections import Section
 from hookean.values.units import Units
 
-if TYPE_CHECKING:
-    AnyForce = Force
-else:
-    AnyForce = Annotated[Union[tuple(KINDS.values())], ByKind(KINDS)]  # noqa: UP007
+AnyForce = Annotated[Force, ByKind(KINDS)]
+"""A force of any kind."""
 
 
 class MeshData(Model):

@@ -84,6 +84,14 @@ def _loose(flags: Ints, label: Ints, partly: list[tuple[Ints, Floats]]) -> tuple
     return loose, supported
 
 
+def linked(links: Ints, count: int) -> Ints:
+    """The label (count,) of the connected part of each of so many points that links (k, 2) connect."""
+    free, parent, notes, label = np.ones((count, 3)), np.arange(count), np.zeros(count, np.int64), np.empty(count, int)
+    dispatch.compiled(unite)(np.ascontiguousarray(links, np.int64), free, False, parent, notes)
+    dispatch.compiled(number)(parent, free, notes, label, np.empty_like(label), np.empty_like(label))
+    return label
+
+
 JOINED, HELD = 1, 2  # notes on particles: an element acts on it; something supports it in all directions
 AXES = np.array([4, 8, 16])  # or along x, y, z
 

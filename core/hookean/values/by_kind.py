@@ -1,6 +1,6 @@
 """Unions of models that differ by their `kind`, of which pydantic builds those that are given.
 
-    AnyForce = Annotated[Union[Springs, Unary, ...], ByKind({"springs": Springs, "unary": Unary, ...})]
+    AnyForce = Annotated[Force, ByKind({"springs": Springs, "unary": Unary, ...})]
 
 Errors and schemas are those of a union with `Field(discriminator="kind")`. Such a union builds all its models before
 it reads the first, which takes as long as the rest of a small program.
@@ -20,7 +20,7 @@ class ByKind:
     """What makes a union of models by their kinds; the serializer of each is its own."""
 
     def __init__(self, models: Mapping[str, type[BaseModel]]) -> None:
-        self._models = models
+        self.models = models
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
         return core_schema.no_info_plain_validator_function(self._checked)
@@ -30,13 +30,13 @@ class ByKind:
 
     def _checked(self, value: Any) -> Any:
         kind = value.get("kind") if isinstance(value, Mapping) else getattr(value, "kind", None)
-        if isinstance(kind, str) and kind in self._models:
-            return _alone(self._models[kind], kind).validate_python(value)
+        if isinstance(kind, str) and kind in self.models:
+            return _alone(self.models[kind], kind).validate_python(value)
         return self._union.validate_python(value)  # its error names all kinds
 
     @cached_property
     def _union(self) -> TypeAdapter[Any]:
-        union: Any = Annotated[Union[tuple(self._models.values())], Field(discriminator="kind")]  # noqa: UP007
+        union: Any = Annotated[Union[tuple(self.models.values())], Field(discriminator="kind")]  # noqa: UP007
         return TypeAdapter(union)
 
 

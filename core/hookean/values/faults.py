@@ -12,6 +12,7 @@ from typing import Annotated, Any, Union, get_args, get_origin
 from pydantic import BaseModel, ValidationError
 
 from hookean.errors import InputError, several
+from hookean.values.by_kind import ByKind
 
 SUGGESTED = 100  # faults with a nearest known name: to look for it takes as long as to read a force
 
@@ -144,7 +145,9 @@ def _is_model(hint: Any) -> bool:
 def _alternatives(hint: Any) -> list[Any]:
     """A hint without `Annotated`, and the members of a union."""
     if get_origin(hint) is Annotated:
-        return _alternatives(get_args(hint)[0])
+        plain, *notes = get_args(hint)
+        kinds = [model for note in notes if isinstance(note, ByKind) for model in note.models.values()]
+        return kinds or _alternatives(plain)
     if get_origin(hint) in (Union, UnionType):
         return [a for member in get_args(hint) for a in _alternatives(member)]
     return [hint]

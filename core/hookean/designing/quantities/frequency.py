@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 import numpy as np
 from pydantic import NonNegativeInt
 
-from hookean.analysis.frequencies import lowest
 from hookean.designing.columns import Column
 from hookean.designing.drawn import Mass
 from hookean.designing.quantities.base import Floats, Quantity, Slopes, matrix
@@ -61,6 +60,8 @@ class Frequency(Quantity):
 
     def _mode(self, found: Equilibrium, pointer: str) -> tuple[float, Floats]:
         """The frequency, and the mode (n, 3) of modal mass 1."""
+        from hookean.analysis.frequencies import lowest
+
         system = found.system
         together = any(
             group.cls.gathered(group.block, memory, found.x, None) is not None
