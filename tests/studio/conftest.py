@@ -77,8 +77,7 @@ class Person:
     def page(self) -> Any:
         """A page without what an earlier test kept in it."""
         self.context.clear_permissions()
-        page, self.kept = self.kept or self.context.new_page(), None
-        page.goto(f"{self.service.url}/v1/health")  # of the same origin: another one has another process
+        page, self.kept = self.kept or self._blank(), None
         page.evaluate("() => sessionStorage.clear()")
         stored = {"origin": self.service.url, "storageTypes": "local_storage,indexeddb"}
         self.context.new_cdp_session(page).send("Storage.clearDataForOrigin", stored)
@@ -90,9 +89,17 @@ class Person:
             studio.page.close()
             return
         studio.unwatch()
-        studio.page.goto(f"{self.service.url}/v1/health")
+        self._leave(studio.page)
         studio.page.mouse.move(0, 0)
         self.kept = studio.page
+
+    def _blank(self) -> Any:
+        page = self.context.new_page()
+        self._leave(page)
+        return page
+
+    def _leave(self, page: Any) -> None:
+        page.goto(f"{self.service.url}/v1/health")  # of the same origin: another one has another process
 
 
 def person(people: dict[bool, Person], browser: Any, service: Service, fingers: bool) -> Person:

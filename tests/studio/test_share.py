@@ -27,10 +27,12 @@ def seen(studio: Studio, particle: int) -> np.ndarray:
 
 
 def test_a_read_only_link_shows_the_same_view_live_and_changes_nothing(tab: Studio, open_studio: Opened):
-    """The camera is the same to a pixel in 800, colours and selection are the same; frames come while its owner plays;
-    a drag turns the view and keys do nothing; once revoked, the page says so."""
+    """The camera is the same to a pixel in 800, colours, selection and a group of many are the same; frames come while
+    its owner plays; a drag turns the view and keys do nothing; once revoked, the page says so."""
     page, service = tab.page, tab.service
     service.put("shared", net(5))
+    many = json.dumps({"many": list(range(6000))})  # 29,000 characters
+    page.evaluate("(many) => localStorage.setItem('hookean-groups-shared', many)", many)
     tab.open("shared")
     page.context.grant_permissions(["clipboard-read", "clipboard-write"])
     tab.press("Front")
@@ -49,6 +51,7 @@ def test_a_read_only_link_shows_the_same_view_live_and_changes_nothing(tab: Stud
     assert np.abs(seen(guest, 3) - there).max() < 1 / 800
     assert guest.page.get_by_role("radio", name="Strain").is_checked()
     guest.page.get_by_role("heading", name="Particle 7", exact=True).wait_for()
+    assert "6,000 particles" in guest.page.locator("ul[aria-label=Groups] li").text_content(timeout=20_000)
     assert guest.page.get_by_text("Read only", exact=True).is_visible()
     for name in EDITING:
         assert not guest.page.get_by_role("button", name=name, exact=True).count(), name

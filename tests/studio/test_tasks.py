@@ -69,7 +69,8 @@ def same(studio: Studio, key: str, truth: Result) -> None:
 
 def test_a_roof_is_formed_loaded_with_snow_saved_and_reopened(studio: Studio, tmp_path: Path):
     """The roof under snow is that of the Python API, and so is the file that was saved. The table of reactions adds up
-    to the snow: 0.6 kN/m2 of the plan that the edge cables leave, by the corners of its faces."""
+    to the snow: 0.6 kN/m2 of the plan that the edge cables leave, by the corners of its faces. The longest arrow of a
+    load is what the faces about a particle put on it, a third of each on every corner."""
     first, second = tasks.roof(studio, tmp_path, unseen)
     scene = family("saddle", {"force": "kN"}, rise=2.5, edge_stiffness=60)
     snow = AreaWeight(name="area weight", mesh="net", weight=0.6, per="plan")
@@ -82,6 +83,12 @@ def test_a_roof_is_formed_loaded_with_snow_saved_and_reopened(studio: Studio, tm
     x, y = np.moveaxis(corners, 2, 0)
     plan = 0.5 * np.abs(np.sum(x * np.roll(y, -1, 1) - y * np.roll(x, -1, 1), axis=1)).sum()
     assert sums(studio)[2] == pytest.approx(0.6 * plan, rel=1e-3)  # four digits are shown
+    borne = np.zeros(len(truth.particles))
+    weights = truth.forces[-1]
+    np.add.at(borne, np.asarray(weights["particles"]), -np.asarray(weights["force"])[:, 2, None] / 3)
+    legend = studio.page.get_by_role("group", name="Legend").inner_text
+    found = studio.until(lambda: re.search(r"Load\s+up to ([\d.]+) kN", legend()))
+    assert float(found[1]) == pytest.approx(borne.max(), rel=1e-2)  # three digits are shown
 
 
 @pytest.mark.soak

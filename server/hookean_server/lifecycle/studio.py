@@ -25,6 +25,7 @@ from urllib.parse import quote
 import typer
 
 from hookean.commands.command import new
+from hookean_server.http import packing
 from hookean_server.lifecycle import command
 from hookean_server.lifecycle.discovery import Distrusted, Found, ask, check, find, folder, proven
 
@@ -32,7 +33,7 @@ STARTED = 60.0  # seconds a server may take to start; kernels may have to be com
 READ = 240.0  # seconds it may take to read a file
 PAUSE = 0.2  # seconds between looks whether a page has logged in
 VIEW = "view.json"  # the part of a saved model that has how it was looked at
-LONGEST_VIEW = 64_000  # bytes
+LONGEST_VIEW = 60_000  # characters of an address, which every browser takes
 DOOR = "open-"  # what names of files begin with that lead a browser to the page
 REDIRECT = """<!doctype html>
 <html lang="en">
@@ -186,11 +187,12 @@ def view_in(data: bytes) -> str:
         suppress(zipfile.BadZipFile, KeyError, ValueError, NotImplementedError, zlib.error),
         zipfile.ZipFile(io.BytesIO(data)) as parts,
     ):
-        if parts.getinfo(VIEW).file_size > LONGEST_VIEW:
+        if parts.getinfo(VIEW).file_size > packing.LARGEST:
             return ""
         view = json.loads(parts.read(VIEW))
-        if isinstance(view, dict) and view:
-            return f"&v={quote(json.dumps(view, separators=(',', ':')), safe='')}"
+        told = packing.packed(json.dumps(view, separators=(",", ":")))
+        if isinstance(view, dict) and view and len(told) <= LONGEST_VIEW:
+            return f"&v={told}"
     return ""
 
 

@@ -13,7 +13,7 @@ from starlette.responses import JSONResponse, Response
 
 from hookean.errors import InputError
 from hookean.scene.text import parse
-from hookean_server.http import claimed, openapi
+from hookean_server.http import claimed, openapi, packing
 from hookean_server.http.access import reading
 from hookean_server.http.handling import read_json, uploaded_scene
 from hookean_server.http.limits import media_type
@@ -196,7 +196,11 @@ async def state(
     form: Annotated[Literal["json", "npz", "hookean", "3dm", "obj", "compas", "csv"], Query(alias="format")] = "json",
     arrays: Arrays = "list",
     view: Annotated[
-        str, Query(max_length=16_000, description="Of `hookean`: how it is looked at, a JSON object")
+        str,
+        Query(
+            max_length=48_000,
+            description="Of `hookean`: how it is looked at, a JSON object as text, or that as raw deflate in base64url",
+        ),
     ] = "{}",
 ) -> Response:
     """A result as JSON; or a file: .hookean with scene, state and view, .npz of Simulation.save, .3dm, .obj,
@@ -213,7 +217,7 @@ async def state(
 def _view(told: str) -> dict[str, Any]:
     """How a session is looked at; the problem of a request whose view is not a JSON object."""
     try:
-        found = parse(told, "view")
+        found = parse(packing.unpacked(told, "view") if packing.is_packed(told) else told, "view")
         if not isinstance(found, dict):
             raise InputError("view", f"{told[:40]!r} given; give a JSON object")
     except InputError as error:

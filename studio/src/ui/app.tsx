@@ -30,7 +30,7 @@ export function App() {
 function Shown() {
   const key = place.value;
   if (entry.value === "out") return guest ? <Ended /> : <Entry />;
-  if (entry.value === "asking")
+  if (entry.value === "asking" || key === null)
     return (
       <main id="main" class="entry" tabIndex={-1}>
         <p>Connecting to the service ...</p>

@@ -12,7 +12,8 @@ interface Told {
   choose: (particles: number[]) => void;
 }
 
-export function Groups({ studio: { options }, chosen, choose }: Told) {
+export function Groups({ studio: { options, session }, chosen, choose }: Told) {
+  const isOwn = !session.readOnly;
   const name = useSignal("");
   const groups = options.groups.value;
   const paint = (called: string, colour: string) =>
@@ -35,24 +36,26 @@ export function Groups({ studio: { options }, chosen, choose }: Told) {
   };
   return (
     <>
-      <form class="row" onSubmit={keep}>
-        <input
-        type="text"
-          aria-label="Name of the group"
-          title="A name for the selected particles, such as edge"
-          placeholder="Name"
-          value={name.value}
-          onInput={(event) => (name.value = event.currentTarget.value)}
-        />
-        <button
-          type="submit"
-          class="small"
-          title="The selection under this name, with a colour; saved with the model"
-          disabled={!chosen.length || !name.value.trim()}
-        >
-          Keep as a group
-        </button>
-      </form>
+      {isOwn && (
+        <form class="row" onSubmit={keep}>
+          <input
+            type="text"
+            aria-label="Name of the group"
+            title="A name for the selected particles, such as edge"
+            placeholder="Name"
+            value={name.value}
+            onInput={(event) => (name.value = event.currentTarget.value)}
+          />
+          <button
+            type="submit"
+            class="small"
+            title="The selection under this name, with a colour; saved with the model"
+            disabled={!chosen.length || !name.value.trim()}
+          >
+            Keep as a group
+          </button>
+        </form>
+      )}
       <ul aria-label="Groups" class="groups">
         {Object.entries(groups).map(([called, particles]) => (
           <li key={called} class="row">
@@ -61,6 +64,7 @@ export function Groups({ studio: { options }, chosen, choose }: Told) {
               class="swatch"
               aria-label={`Colour of the group ${called}`}
               title="Rings of this colour mark the particles of the group"
+              disabled={!isOwn}
               value={options.groupColours.value[called] ?? COLOURS[0]}
               onInput={(event) => paint(called, event.currentTarget.value)}
             />
@@ -68,15 +72,17 @@ export function Groups({ studio: { options }, chosen, choose }: Told) {
               {called}
             </button>
             <span class="faint">{counted(particles.length, "particle")}</span>
-            <button
-              type="button"
-              class="plain"
-              aria-label={`Forget the group ${called}`}
-              title="Forget the group; its particles stay"
-              onClick={() => forget(called)}
-            >
-              ×
-            </button>
+            {isOwn && (
+              <button
+                type="button"
+                class="plain"
+                aria-label={`Forget the group ${called}`}
+                title="Forget the group; its particles stay"
+                onClick={() => forget(called)}
+              >
+                ×
+              </button>
+            )}
           </li>
         ))}
       </ul>

@@ -1,11 +1,12 @@
 // Groups of particles: in this browser by session, and in the file of a model.
 import type { Groups, Kept } from "../view/types";
 import { isAny, type Kept as Problem } from "./designing";
+import { packed } from "../view/packed";
 import { remember, remembered } from "./theme";
 
 const name = (key: string) => `hookean-groups-${key}`;
-/** Characters of a view that the service takes. */
-const LONGEST = 12_000;
+/** Characters of a view, packed, that the service takes, and that an address may have in every browser. */
+const LONGEST = 40_000;
 
 export const keptGroups = (key: string) => remembered<Groups>(name(key), {});
 
@@ -38,19 +39,21 @@ export const keptRecipe = (key: string) => remembered<Recipe | null>(recipes(key
 
 export const keepRecipe = (key: string, recipe: Recipe) => remember(recipes(key), recipe);
 
-/** The view as a file keeps it, with the design problem, and sentences on what does not fit into it. */
-export function fitting(view: Kept, design: Problem): { view: Kept; notes: string[] } {
+/** The view as a file or an address keeps it, packed, with the design problem, and sentences on what is too long. */
+export async function fitting(view: Kept, design: Problem, place: string): Promise<{ view: string; notes: string[] }> {
   const { groups, recipe, ...rest } = view;
   const notes: string[] = [];
   let kept: Kept = rest;
-  const keep = (more: Partial<Kept>, note: string) => {
+  let made = await packed(JSON.stringify(kept));
+  const keep = async (more: Partial<Kept>, note: string) => {
     const wider = { ...kept, ...more };
-    if (JSON.stringify(wider).length <= LONGEST) kept = wider;
+    const longer = await packed(JSON.stringify(wider));
+    if (longer.length <= LONGEST) [kept, made] = [wider, longer];
     else notes.push(note);
   };
-  if (isAny(design)) keep({ design }, "The design problem is too large for the file; this browser keeps it.");
+  if (isAny(design)) await keep({ design }, `The design problem is too large for the ${place}; this browser keeps it.`);
   const names = Object.keys(groups ?? {}).join(", ");
-  if (groups) keep({ groups }, `The groups ${names} are too large for the file; this browser keeps them.`);
-  if (recipe) keep({ recipe }, "The recipe is too long for the file; save it by itself.");
-  return { view: kept, notes };
+  if (groups) await keep({ groups }, `The groups ${names} are too large for the ${place}; this browser keeps them.`);
+  if (recipe) await keep({ recipe }, `The recipe is too long for the ${place}; save it by itself.`);
+  return { view: made, notes };
 }

@@ -1,6 +1,7 @@
 // How a session is looked at, in an address: of a read-only link, or of a saved model that the command has opened.
 import type { Kept } from "../view/types";
 import { keepView } from "../view/kept";
+import { isPacked, unpacked } from "../view/packed";
 import { guest } from "../guest";
 import { isKept, keepDesign } from "./designing";
 import { keepRecipe, keptRecipe } from "./kept";
@@ -12,10 +13,10 @@ export function keepSeen(key: string, view: Kept | null): void {
   if (view?.recipe) keepRecipe(key, view.recipe);
 }
 
-/** The same from an address; an address that was cut shows the session as without it. */
-export function keepLooked(key: string, told: string): void {
+/** The same from an address, plain or packed; one that was cut shows the session as without it. */
+export async function keepLooked(key: string, told: string): Promise<void> {
   try {
-    const view = JSON.parse(told) as Kept | null;
+    const view = JSON.parse(isPacked(told) ? await unpacked(told) : told) as Kept | null;
     if (!view || typeof view !== "object") return;
     keepView(key, view);
     // an address replaces nothing that this browser keeps

@@ -117,7 +117,7 @@ export function OutPanel({ studio, title }: { studio: Studio; title: string }) {
     const recipe = keptRecipe(session.key);
     const now = format === "hookean" ? seenNow(studio) : null;
     const seen = now && { ...now, ...(recipe && { recipe }) };
-    const kept = seen && fitting(seen, studio.design.problem.value);
+    const kept = seen && (await fitting(seen, studio.design.problem.value, "file"));
     const made = await api.exported(session.key, format, kept?.view);
     const blob = format === "hookean" ? await withReel(made.blob, studio.film.reel()) : made.blob;
     return { blob, notes: [...made.notes, ...(kept?.notes ?? [])] };

@@ -4,8 +4,8 @@ import * as api from "../api";
 import { guest } from "../guest";
 import { keepLooked } from "./looked";
 
-/** Key of the session that is shown; "" on the start page. */
-export const place = signal("");
+/** Key of the session that is shown; "" on the start page; null while the address is read. */
+export const place = signal<string | null>(null);
 /** Whether this browser is logged in, as far as it is known. */
 export const entry = signal<"asking" | "in" | "out">(guest ? "in" : "asking");
 /** Counts log-ins: what was refused before one is tried again after it. */
@@ -25,6 +25,8 @@ export function go(key: string): void {
 const RENEWING = 3600e3; // ms; a cookie that is not used for 12 hours is worth nothing
 
 let isFirst = true;
+/** Counts readings of the address: a view that is unpacked late is not shown. */
+let turns = 0;
 
 /** To be called by a page when it is there: all but the first are read from their beginning. */
 export function arrive(): void {
@@ -78,14 +80,16 @@ function read(): boolean {
   const token = told.get("t");
   const key = told.get("s") ?? "";
   const view = told.get("v");
-  if (key && view) keepLooked(key, view);
   if (token) {
     // neither the history nor a copied address keeps the token
     history.replaceState(null, "", key ? linkTo(key) : location.pathname);
     if (guest) location.reload();
     void enter(token);
   }
-  place.value = key;
+  const turn = ++turns;
+  const show = () => turn === turns && (place.value = key);
+  if (key && view) void keepLooked(key, view).then(show);
+  else show();
   return token !== null;
 }
 

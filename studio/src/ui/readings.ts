@@ -3,6 +3,7 @@ import { effect, signal } from "@preact/signals";
 import * as api from "../api";
 import type { Point, Result, Topology } from "../model";
 import type { Session } from "../session";
+import { shares } from "../view/spread";
 import type { Options } from "../view/types";
 
 export interface Load {
@@ -105,14 +106,11 @@ function restLengths(result: Result, topology: Topology): Float32Array {
 }
 
 function loadsOn(result: Result, topology: Topology, particle: number): Load[] {
-  const found: Load[] = [];
-  topology.forces.forEach(({ role, kind }, number) => {
-    const force = result.forces[number] as { name: string; particles?: number[][]; force?: Point[] } | undefined;
-    if (role !== "load" || !force?.force) return;
-    force.particles?.forEach((row, place) => {
-      const vector = force.force?.[place];
-      if (row.length === 1 && row[0] === particle && vector) found.push({ name: force.name || kind, vector });
-    });
-  });
-  return found;
+  const sums = new Map<string, Point>();
+  for (const { particle: at, name, vector } of shares(result, topology)) {
+    if (at !== particle) continue;
+    const [x, y, z] = sums.get(name) ?? [0, 0, 0];
+    sums.set(name, [x + vector[0], y + vector[1], z + vector[2]]);
+  }
+  return Array.from(sums, ([name, vector]) => ({ name, vector }));
 }

@@ -96,7 +96,7 @@ function SelectedParticles({ studio, topology }: { studio: Studio; topology: Top
       </p>
       {!session.readOnly && <Acts studio={studio} chosen={chosen} />}
       {!session.readOnly && <Stiffen studio={studio} chosen={chosen} />}
-      {!session.readOnly && <Groups studio={studio} chosen={chosen} choose={choose} />}
+      <Groups studio={studio} chosen={chosen} choose={choose} />
     </>
   );
 }

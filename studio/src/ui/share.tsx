@@ -40,13 +40,13 @@ export function Share({ studio }: { studio: Studio }) {
       const token = await api.link(session.key);
       isLinked.value = true;
       const seen = seenNow(studio);
-      const view = seen ? `&v=${encodeURIComponent(JSON.stringify(fitting(seen, NOTHING).view))}` : "";
-      const made = `${location.origin}/#g=${token}&${linkTo(session.key).slice(1)}${view}`;
+      const kept = seen && (await fitting(seen, NOTHING, "link"));
+      const made = `${location.origin}/#g=${token}&${linkTo(session.key).slice(1)}${kept ? `&v=${kept.view}` : ""}`;
       address.value = "";
       await navigator.clipboard.writeText(made).catch(() => (address.value = made));
       const how = address.value ? "Copy the link below." : "The read-only link was copied.";
       const where = "It shows this view in any browser of this machine, until you revoke it or delete the session.";
-      done.value = `${how} ${where}`;
+      done.value = [how, where, ...(kept?.notes ?? [])].join(" ");
     } catch (error) {
       met(error);
       refuse(error, "There is no read-only link. ");

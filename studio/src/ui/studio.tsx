@@ -56,7 +56,7 @@ export function SessionPage({ name }: { name: string }) {
       effect(() => keepColours(name, chosen.groupColours.value)),
     ];
     const readings = new Readings(session, chosen);
-    const rested = new Rested(session);
+    const rested = new Rested(session, chosen);
     const design = new Designing(session);
     const surfacing = new Surfacing(session, chosen, seen?.surface);
     const film = new Film(session, chosen);

@@ -6,6 +6,8 @@ export interface Acting {
   particles: Int32Array;
   /** x y z of the sum of the loads on each [force] */
   vectors: Float32Array;
+  /** Whether faces or lines bear some of them. */
+  isSpread: boolean;
 }
 
 type Load = Topology["loads"][number];
@@ -13,7 +15,8 @@ type Load = Topology["loads"][number];
 /** The scene that each topology was read with. */
 const readWith = new WeakMap<Topology, Scene>();
 
-export function acting(topology: Topology, scene: Scene | null): Acting {
+/** `spread`: what faces and lines bear besides. */
+export function acting(topology: Topology, scene: Scene | null, spread: Acting | null = null): Acting {
   if (scene && !readWith.has(topology)) readWith.set(topology, scene);
   const before = readWith.get(topology);
   const sums = new Map<number, Point>();
@@ -25,10 +28,16 @@ export function acting(topology: Topology, scene: Scene | null): Acting {
       sums.set(particle, [x + u, y + v, z + w]);
     });
   }
+  spread?.particles.forEach((particle, i) => {
+    const [x, y, z] = sums.get(particle) ?? [0, 0, 0];
+    const { vectors } = spread;
+    sums.set(particle, [x + vectors[3 * i]!, y + vectors[3 * i + 1]!, z + vectors[3 * i + 2]!]);
+  });
   const all = [...sums].filter(([, sum]) => sum.some((value) => value !== 0));
   return {
     particles: Int32Array.from(all, ([particle]) => particle),
     vectors: Float32Array.from(all.flatMap(([, sum]) => sum)),
+    isSpread: spread !== null && spread.particles.length > 0,
   };
 }
 

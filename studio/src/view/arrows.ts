@@ -8,7 +8,7 @@ const VERTEX = `
 uniform highp isampler2D rows;
 uniform sampler2D vectors;
 uniform float scale, width, head, gap;
-uniform bool inward;
+uniform bool inward, faced;
 out vec3 place_;
 flat out float reach;
 flat out float tip;
@@ -20,7 +20,9 @@ void main() {
   vec3 v = texelFetch(vectors, place(row), 0).xyz * scale;
   if (!(dot(v, v) > 0.0)) return;
   // what pushes against the form ends on its particle, what pulls begins there
-  bool pushes = inward && dot(v, p) < -1e-3 * length(v) * length(p);
+  bool into = inward && dot(v, p) < -1e-3 * length(v) * length(p);
+  // faces would hide what points away from the eye and begins on them
+  bool pushes = into || (faced && seen(p + v).z < seen(p).z - 0.02 * length(v));
   vec3 a = seen(pushes ? p - v : p), b = seen(pushes ? p : p + v);
   if (a.z >= 0.0 || b.z >= 0.0) return;
   vec4 from = drawn(a, pixel(a) * 3.0), to = drawn(b, pixel(b) * 3.0);
@@ -68,6 +70,8 @@ export class Arrows {
     head: { value: 10 },
     /** So far before its particle the tip of one that pushes ends [CSS pixels]. */
     gap: { value: 7 },
+    /** Whether they act on faces, which hide what is behind them. */
+    faced: { value: false },
     shade: { value: [0, 0, 0, 1] as [number, number, number, number] },
   };
   /** The longest vector [force] */
@@ -115,15 +119,18 @@ export class Arrows {
     this.style.scale.value = reach / (this.full || 1);
   }
 
-  /** Where those end that are drawn, beginning at their particles [length]. */
+  /** Where those end that are drawn, beginning at their particles, and on faces also ending there [length]. */
   tips(positions: Float32Array): number[] {
     if (!this.mesh.visible) return [];
     const found: number[] = [];
-    this.particles.forEach((particle, i) => {
-      for (let axis = 0; axis < 3; axis++) {
-        found.push(positions[3 * particle + axis]! + this.style.scale.value * (this.now[3 * i + axis] ?? 0));
-      }
-    });
+    const { scale, faced } = this.style;
+    for (const way of faced.value ? [1, -1] : [1]) {
+      this.particles.forEach((particle, i) => {
+        for (let axis = 0; axis < 3; axis++) {
+          found.push(positions[3 * particle + axis]! + way * scale.value * (this.now[3 * i + axis] ?? 0));
+        }
+      });
+    }
     return found;
   }
 

@@ -145,7 +145,7 @@ export class Picture {
   }
 
   /** The loads now; of very many some are drawn. */
-  bear({ particles, vectors }: Acting): void {
+  bear({ particles, vectors, isSpread }: Acting): void {
     const { common, group, renderer } = this.stage;
     this.thinned = Math.max(1, Math.ceil(particles.length / MOST_ARROWS));
     const kept = particles.filter((_, i) => i % this.thinned === 0);
@@ -155,6 +155,7 @@ export class Picture {
       this.loads = new Arrows(common, kept, false, 4);
       group.add(this.loads.mesh);
     }
+    this.loads.style.faced.value = isSpread;
     this.loads.put(
       renderer,
       vectors.filter((_, i) => Math.floor(i / 3) % this.thinned === 0),

@@ -3,6 +3,7 @@ import { type Signal, signal } from "@preact/signals";
 import type { Frame } from "../frame";
 import type { PerspectiveCamera } from "three";
 import type { Point } from "../model";
+import type { Acting } from "./acting";
 import type { Place } from "./camera";
 import type { Dress } from "./picture";
 
@@ -105,6 +106,8 @@ export interface Options {
   numbers: Signal<boolean>;
   /** Rest length of each spring [length], for strain; null: not known yet. */
   restLengths: Signal<Float32Array | null>;
+  /** What faces and lines bear, as it was at rest; null: not known of these loads. */
+  spread: Signal<Acting | null>;
   given: Signal<Given | null>;
   /** A variant that is drawn over the form. */
   ghost: Signal<Shadow | null>;
@@ -163,6 +166,7 @@ export const options = (): Options => ({
   measured: signal<number[]>([]),
   numbers: signal(false),
   restLengths: signal<Float32Array | null>(null),
+  spread: signal<Acting | null>(null),
   given: signal<Given | null>(null),
   ghost: signal<Shadow | null>(null),
   painted: signal<Painted | null>(null),

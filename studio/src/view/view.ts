@@ -213,7 +213,7 @@ class Drawing implements View {
     if (!topology) return;
     const { picture, session, options } = this;
     picture.build(form(topology));
-    picture.bear(acting(topology, session.scene.peek()));
+    picture.bear(acting(topology, session.scene.peek(), options.spread.peek()));
     picture.hold(session.anchors.peek());
     picture.know(options.restLengths.peek());
     this.ghost.put(options.ghost.peek(), true);
@@ -305,10 +305,10 @@ class Drawing implements View {
         this.ask();
       }),
       effect(() => {
-        const { value } = session.scene;
+        const [scene, spread] = [session.scene.value, options.spread.value];
         const topology = session.topology.peek();
         if (!topology) return;
-        picture.bear(acting(topology, value));
+        picture.bear(acting(topology, scene, spread));
         this.dressed = 0;
         this.outdated = true;
         this.ask();
