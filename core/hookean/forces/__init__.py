@@ -23,8 +23,9 @@ class _Kinds(Mapping[str, type[Force]]):
 
     def __getitem__(self, kind: str) -> type[Force]:
         if kind not in self._known:
-            there = kind.isidentifier() and find_spec(f"{__name__}.{kind}") is not None
-            self._known[kind] = _class_in(kind) if there else None
+            if not kind.isidentifier() or find_spec(f"{__name__}.{kind}") is None:
+                raise KeyError(kind)
+            self._known[kind] = _class_in(kind)
         found = self._known[kind]
         if found is None:
             raise KeyError(kind)
