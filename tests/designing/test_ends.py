@@ -12,6 +12,7 @@ import pytest
 import hookean
 from hookean import InputError
 from hookean.designing.answer import Design
+from hookean.designing.problem import METHODS
 
 
 def string(size: float = 1.0, load: float = -5.0, rest: float = 1.0, stiffness: float = 100.0) -> dict[str, Any]:
@@ -161,3 +162,13 @@ def test_a_goal_that_no_variable_changes_is_reported() -> None:
     found = design(string(), [REST], goals)
     assert found.warnings == ["no variable changes goal support at this shape"]
     assert found.objective == pytest.approx(1.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("method", [name for name in METHODS if name != "augmented_lagrangian"])  # needs constraints
+def test_a_search_that_begins_at_its_goals_converges(method: str) -> None:
+    """Where all goals are met but for rounding at the start, there is no smaller objective to compare slopes with."""
+    goals = [{**PLACE, "target": -0.7}]
+    first = design(string(), [REST], goals)
+    again = design(string(rest=float(np.ravel(first.variables[0]["value"])[0])), [REST], goals, method=method)
+    assert first.status == again.status == "converged"
+    assert again.result.particles[1, 2] == pytest.approx(-0.7, abs=1e-12)

@@ -13,6 +13,8 @@ from hookean.errors import InputError
 Floats = NDArray[np.float64]
 Range = tuple[Floats, Floats]
 
+ROUNDED = 1e-12  # of a value: it is at its target
+
 
 class Aims:
     """Ranges of goals, a target being one without width; None for those that are minimised. Limits of constraints."""
@@ -49,6 +51,13 @@ class Aims:
         pairs = zip(self.goals, self.missed(self.values(found)), strict=True)
         parts = [np.sqrt(goal.weight) * missed for goal, missed in pairs if missed is not None]
         return np.concatenate(parts) if parts else np.zeros(0)
+
+    def rounding(self, found: Equilibrium) -> float:
+        """The objective where all values are at their targets but for rounding; less than any, if one is minimised."""
+        if any(among is None for among in self.ranges):
+            return -np.inf
+        sizes = [goal.weight * float((own**2).sum()) for goal, own in zip(self.goals, self.values(found), strict=True)]
+        return ROUNDED**2 * sum(sizes)
 
     def weights(self, found: Equilibrium) -> Floats:
         """The weight (k,) of each residual; 0 for values within their ranges."""

@@ -93,7 +93,10 @@ def _both(search: Search) -> NDArray[np.bool_]:
 
 
 def at_minimum(search: Search) -> bool:
-    """Whether the best so far is a minimum of first order: nothing but bounds and constraints has a slope left."""
+    """Whether the best so far is a minimum of first order: nothing but bounds and constraints has a slope left, or all
+    goals are met."""
+    if search.best[0] <= 0.0 and search.best[1] <= search.met:
+        return True
     y = search.best[2]
     found = search.at(y)
     gained = gains(search, found, y) if found.converged else None

@@ -79,6 +79,7 @@ class Search:
             for constraint, values, limits in zip(problem.constraints, first, self.aims.limits, strict=True)
         ]
         self.first_value = abs(self._objective(self.first))
+        self.met = self.aims.rounding(self.first)
         self.note(np.zeros(self.unknowns.count))
 
     @property
