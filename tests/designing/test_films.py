@@ -72,6 +72,7 @@ def slope(name: str, goal: dict[str, Any], **way: float) -> float:
     return (8.0 * (value(1.0) - value(-1.0)) - (value(2.0) - value(-2.0))) / (12.0 * STEP)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["plain", "cable", "sliding", "fin"])
 def test_derivatives_through_a_coarse_film_are_those_of_whole_solves(name: str) -> None:
     """By pressure, tension and a shift of the rim, of the places of vertices along the film, too, of its area and of
