@@ -204,9 +204,14 @@ def _slsqp(search: Search) -> Ended:
             iterations += nearer(search)
             if search.best[0] > 0.0:
                 return iterations, DesignStatus.INFEASIBLE, ""
-        elif found.status == 0 and (at_minimum(search) or not before - search.best[1] > settings.tolerance * size):
-            search.rest_at(found.x)
-            return iterations, DesignStatus.CONVERGED, ""
+        elif found.status == 0:
+            if least := at_minimum(search):
+                search.rest_at(found.x)
+            if least or not before - search.best[1] > settings.tolerance * size:
+                ended = search.best[1]
+                polish(search)  # which may lead on along a valley, to where limits do not hold yet
+                if not (least and ended - search.best[1] > settings.tolerance * abs(ended)):
+                    break
         before, start = search.best[1], search.best[2].copy()  # what it measures by was the objective at its start
     if at_minimum(search):
         return iterations, DesignStatus.CONVERGED, ""
