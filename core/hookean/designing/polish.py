@@ -33,6 +33,7 @@ STEP = 1e-4  # of an unknown's size, of differences of second order: 1e-8, and r
 STRAIGHT = 1e-12  # part of the largest curvature: that of directions that have less
 DAMPINGS = (0.0, 1e-9, 1e-7, 1e-5, 1e-3, 0.1)  # parts of the largest curvature, added to all
 SHORT = (1e-3, 1e-4, 1e-5, 1e-6)  # of an unknown's size, of steps straight down: near a snap, where nothing else leads
+SHORTER = (1.0, 0.9, 0.5)  # parts of a step to a limit, which may be nearer than by its slope
 GAIN = 1e-12  # part of the objective: a step that gains less is the last
 
 
@@ -131,7 +132,8 @@ def _newton(search: Search, here: Here) -> list[Floats]:
         step = np.zeros(len(free))
         step[free] = back - across @ (turned @ ((turned.T @ slope) / np.where(bent > 0.0, bent, np.inf)))
         if np.isfinite(step).all():
-            steps.append(step * _length(search, here, every @ step))
+            length = _length(search, here, every @ step)
+            steps += [step * length * part for part in (SHORTER if length < 1.0 else SHORTER[:1])]
     down, size = across @ (across.T @ here.slope[free]), float(np.linalg.norm(across.T @ here.slope[free]))
     for length in SHORT if size > 0.0 else ():
         step = np.zeros(len(free))
