@@ -59,6 +59,21 @@ def test_methods_that_make_no_headway_hand_over(monkeypatch: pytest.MonkeyPatch)
         assert found.result.particles[1, 2] == pytest.approx(-0.5, rel=1e-5)
 
 
+@pytest.mark.parametrize("side", [{"lower": -0.7}, {"upper": 0.0, "lower": -0.7}])
+def test_steps_to_the_last_digits_end_at_limits(side: dict[str, float]) -> None:
+    """Steps that would pass a limit end there, and go on along it: from a sag of 0.38 to one of 0.7 where one of 0.9 is
+    wanted, objective 0.04."""
+    from hookean.designing.polish import polish
+    from hookean.designing.problem import Problem
+    from hookean.designing.search import Search
+
+    goals, limits = [{**PLACE, "target": -0.9}], [{**PLACE, **side}]
+    given = {"scene": string(), "variables": [REST], "goals": goals, "constraints": limits}
+    search = Search(Problem.read(given))
+    polish(search)
+    assert search.best[:2] == (0.0, pytest.approx(0.04, rel=1e-5))
+
+
 def test_of_two_limits_at_one_value_the_one_that_holds_has_the_gain() -> None:
     """The objective (z + 0.7)^2 at z = -1 falls by 0.6 as the upper limit gives way by 1, and not by the lower one; the
     limit is met to 1e-6, the slope of the objective to twice that."""

@@ -80,3 +80,10 @@ def test_goals_that_conflict_much_do_not_end_early(twist: str) -> None:
     found, other = hookean.design(case.problem()), hookean.design(case.problem(method="l-bfgs-b"))
     assert (found.status, other.status) == ("converged", "converged")
     assert found.objective <= other.objective * (1.0 + 1e-5)
+
+
+@pytest.mark.soak
+def test_the_last_digits_along_a_limit_are_found() -> None:
+    """A valley that a curved limit crosses: 1.6e-4 lower than where slopes are first slight, 98.8546, SciPy ends."""
+    found = hookean.design(case_of(140, "scaled").problem())
+    assert found.status == "converged" and found.objective < 98.84

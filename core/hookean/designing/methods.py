@@ -50,7 +50,8 @@ def _least_squares(search: Search) -> Ended:
     if not wide.all():  # what cannot vary is left out
         upper = np.where(wide, upper, lower + AT_BOUND)
     start = np.clip(np.zeros(search.unknowns.count), lower, upper)
-    size, taken = _residual_size(search, start), 0
+    rounding = _rounding(search, start)
+    size, taken = max(float(np.linalg.norm(search.residuals(start))), rounding) or 1.0, 0
     tight = max(settings.tolerance * 1e-3, ROUNDING)
     for ftol, most in ((settings.tolerance, SLOW), (settings.tolerance, SLOW), (tight, settings.max_iterations)):
         most = min(most, settings.max_iterations - taken)
@@ -58,7 +59,7 @@ def _least_squares(search: Search) -> Ended:
         taken += used
         if status == 0 and taken >= settings.max_iterations:
             return taken, DesignStatus.MAX_ITERATIONS, ""
-        if search.best[1] <= MET * search.first_value:
+        if search.best[1] <= max(MET * search.first_value, rounding**2):
             return taken, DesignStatus.CONVERGED, ""
         polish(search)  # where goals conflict, steps by first derivatives alone lead on slowly
         if status == 0 and not at_minimum(search):
@@ -88,11 +89,10 @@ def _trust_region(
     return int(found.njev if found.status else found.nfev), int(found.status)
 
 
-def _residual_size(search: Search, start: Floats) -> float:
-    """What residuals are measured by: those of the start, unless they are rounding of the values."""
+def _rounding(search: Search, start: Floats) -> float:
+    """Residuals of this size are rounding of the values of goals."""
     values = np.concatenate([np.zeros(0), *search.aims.values(search.at(start))])
-    rounding = ROUNDING * float(np.linalg.norm(values))
-    return max(float(np.linalg.norm(search.residuals(start))), rounding) or 1.0
+    return ROUNDING * float(np.linalg.norm(values))
 
 
 def _levenberg_marquardt(search: Search) -> Ended:
@@ -204,9 +204,14 @@ def _slsqp(search: Search) -> Ended:
             iterations += nearer(search)
             if search.best[0] > 0.0:
                 return iterations, DesignStatus.INFEASIBLE, ""
-        elif found.status == 0 and (at_minimum(search) or not before - search.best[1] > settings.tolerance * size):
-            search.rest_at(found.x)
-            return iterations, DesignStatus.CONVERGED, ""
+        elif found.status == 0:
+            if least := at_minimum(search):
+                search.rest_at(found.x)
+            if least or not before - search.best[1] > settings.tolerance * size:
+                ended = search.best[1]
+                polish(search)  # which may lead on along a valley, to where limits do not hold yet
+                if not (least and ended - search.best[1] > settings.tolerance * abs(ended)):
+                    break
         before, start = search.best[1], search.best[2].copy()  # what it measures by was the objective at its start
     if at_minimum(search):
         return iterations, DesignStatus.CONVERGED, ""

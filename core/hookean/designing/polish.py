@@ -33,6 +33,7 @@ STEP = 1e-4  # of an unknown's size, of differences of second order: 1e-8, and r
 STRAIGHT = 1e-12  # part of the largest curvature: that of directions that have less
 DAMPINGS = (0.0, 1e-9, 1e-7, 1e-5, 1e-3, 0.1)  # parts of the largest curvature, added to all
 SHORT = (1e-3, 1e-4, 1e-5, 1e-6)  # of an unknown's size, of steps straight down: near a snap, where nothing else leads
+SHORTER = (1.0, 0.9, 0.5)  # parts of a step to a limit, which may be nearer than by its slope
 GAIN = 1e-12  # part of the objective: a step that gains less is the last
 
 
@@ -106,7 +107,7 @@ def _step(search: Search, here: Here) -> bool:
 def _merit(search: Search, here: Here, y: Floats) -> float:
     """The objective and what limits are missed by, each by more than its multiplier."""
     found = search.at(y)
-    if not found.converged:
+    if not found.converged or search.missed(found) > 0.0:
         return np.inf
     values, low, high = _limits(search, found)
     price = 2.0 * np.maximum(np.abs(here.gained.shares), np.abs(here.gained.shares).max(initial=0.0) * 1e-3)
@@ -116,7 +117,8 @@ def _merit(search: Search, here: Here, y: Floats) -> float:
 def _newton(search: Search, here: Here) -> list[Floats]:
     """Steps (u,), each more damped than the one before, then straight down; none without second derivatives."""
     free, count = here.free, int(here.free.sum())
-    by = constraint_slopes(search, here.found)[here.rows][:, free] if len(here.rows) else np.zeros((0, count))
+    every = constraint_slopes(search, here.found) if search.problem.constraints else np.zeros((0, len(free)))
+    by = every[here.rows][:, free]
     hessian = _hessian(search, here)
     if hessian is None:
         return []
@@ -130,13 +132,23 @@ def _newton(search: Search, here: Here) -> list[Floats]:
         step = np.zeros(len(free))
         step[free] = back - across @ (turned @ ((turned.T @ slope) / np.where(bent > 0.0, bent, np.inf)))
         if np.isfinite(step).all():
-            steps.append(step)
+            length = _length(search, here, every @ step)
+            steps += [step * length * part for part in (SHORTER if length < 1.0 else SHORTER[:1])]
     down, size = across @ (across.T @ here.slope[free]), float(np.linalg.norm(across.T @ here.slope[free]))
     for length in SHORT if size > 0.0 else ():
         step = np.zeros(len(free))
         step[free] = back - down * (length / size)
         steps.append(step)
     return steps
+
+
+def _length(search: Search, here: Here, changes: Floats) -> float:
+    """The part of a step, at most 1, after which the first limit holds that does not yet (equation 16.41 there)."""
+    values, low, high = _limits(search, here.found)
+    room = np.where(changes > 0.0, high - values, low - values)
+    room[here.rows] = np.inf * np.sign(changes[here.rows])  # these are held by the step itself
+    ways = (changes != 0.0) & (np.sign(room) == np.sign(changes))
+    return float(min(1.0, (room[ways] / changes[ways]).min(initial=1.0)))
 
 
 def _null(by: Floats) -> Floats:
