@@ -50,8 +50,8 @@ def _least_squares(search: Search) -> Ended:
     if not wide.all():  # what cannot vary is left out
         upper = np.where(wide, upper, lower + AT_BOUND)
     start = np.clip(np.zeros(search.unknowns.count), lower, upper)
-    rounding = _rounding(search, start)
-    size, taken = max(float(np.linalg.norm(search.residuals(start))), rounding) or 1.0, 0
+    least = max(search.met, 0.0)
+    size, taken = max(float(np.linalg.norm(search.residuals(start))), np.sqrt(least)) or 1.0, 0
     tight = max(settings.tolerance * 1e-3, ROUNDING)
     for ftol, most in ((settings.tolerance, SLOW), (settings.tolerance, SLOW), (tight, settings.max_iterations)):
         most = min(most, settings.max_iterations - taken)
@@ -59,7 +59,7 @@ def _least_squares(search: Search) -> Ended:
         taken += used
         if status == 0 and taken >= settings.max_iterations:
             return taken, DesignStatus.MAX_ITERATIONS, ""
-        if search.best[1] <= max(MET * search.first_value, rounding**2):
+        if search.best[1] <= max(MET * search.first_value, least):
             return taken, DesignStatus.CONVERGED, ""
         polish(search)  # where goals conflict, steps by first derivatives alone lead on slowly
         if status == 0 and not at_minimum(search):
@@ -87,12 +87,6 @@ def _trust_region(
             max_nfev=max(most, 1),
         )  # fmt: skip
     return int(found.njev if found.status else found.nfev), int(found.status)
-
-
-def _rounding(search: Search, start: Floats) -> float:
-    """Residuals of this size are rounding of the values of goals."""
-    values = np.concatenate([np.zeros(0), *search.aims.values(search.at(start))])
-    return ROUNDING * float(np.linalg.norm(values))
 
 
 def _levenberg_marquardt(search: Search) -> Ended:
