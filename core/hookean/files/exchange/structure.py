@@ -161,14 +161,15 @@ def _cloth(system: System, result: Result) -> dict[str, dict[str, Floats]]:
         for name, dimension in dimensions(force.kind_name).items():
             if name not in entry:
                 continue
-            values, rule = np.asarray(entry[name], dtype=float), {"least": np.minimum, "state": np.minimum}.get(name)
-            rule = np.maximum if name in ("largest", NAME) else rule
-            size = int(face.max(initial=-1)) + 1
-            if rule is None:
-                column = np.bincount(face, values * share, size) / np.bincount(face, share, size)
+            values, size = np.asarray(entry[name], dtype=float), int(face.max(initial=-1)) + 1
+            if name in ("least", "state"):
+                column = np.full(size, np.inf)
+                np.minimum.at(column, face, values)
+            elif name in ("largest", NAME):
+                column = np.full(size, -np.inf)
+                np.maximum.at(column, face, values)
             else:
-                column = np.full(size, -np.inf if rule is np.maximum else np.inf)
-                rule.at(column, face, values)
+                column = np.bincount(face, values * share, size) / np.bincount(face, share, size)
             own[f"{force.kind_name} {name} [{system.scene.units.of(dimension) or '-'}]"] = column
         found.setdefault(force.mesh, own)
     return found
