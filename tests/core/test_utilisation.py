@@ -193,3 +193,32 @@ def test_a_limit_on_utilisation_names_the_element_or_what_is_missing() -> None:
     assert exceeded(used / 2) == [said]
     with pytest.raises(InputError, match="no element has a known strength"):
         tables.exceeded(tables.read_limits('[force."snow load"]\nmax_utilisation = 1.0'), parts, system, case)
+
+
+def test_stress_and_moment_have_limits() -> None:
+    """A cantilever of 2 m under 10 N has 20 N m at its clamp, and a stress of that over W = 1e-3."""
+    scene = Scene.read({
+        "particles": [[0, 0, 0], [2, 0, 0], [0, 1, 0], [1, 1, 0]],
+        "materials": {"m": {"E": 1e9, "G": 4e8}},
+        "sections": {"s": {"area": 1.0, "Iy": 1.0, "Iz": 1.0, "J": 1.0, "Wy": 1e-3, "Wz": 1e-3}},
+        "forces": [
+            {"kind": "beam", "name": "arm", "particles": [[0, 1]], "material": "m", "section": "s"},
+            {"kind": "unary", "particles": [1], "vector": [0, 0, -10.0]},
+            {"kind": "springs", "name": "wire", "particles": [[2, 3]]},
+        ],
+        "anchors": [{"particles": [0], "rotations": "xyz"}, {"particles": [2, 3]}],
+        "settings": {"tolerance": 1e-10},
+    })  # fmt: skip
+    found, system = relax(scene), compile(scene)
+    parts = tables.sections(system, found)
+
+    def said(text: str) -> list[str]:
+        return tables.exceeded(tables.read_limits(text), parts, system, found)
+
+    assert said("max_moment = 20.1\nmax_stress = 20100") == []
+    assert said("max_moment = 19") == ["model: max moment 20 N m at element 0 of arm exceeds the limit 19 N m"]
+    [stress] = said('max_stress = 1.9\nunits = {length = "cm"}')
+    assert stress == "model: max stress 2 N/cm^2 at element 0 of arm exceeds the limit 1.9 N/cm^2"
+    for limit, words in (("max_stress", "no element has a known section"), ("max_moment", "no element is a beam")):
+        with pytest.raises(InputError, match=words):
+            said(f"[force.wire]\n{limit} = 1")

@@ -319,6 +319,41 @@ def test_elastic_supports_have_their_stiffness_and_reaction_in_ifc(tmp_path: Pat
     assert numbers["reaction moment y [N m]"] == found.reactions["moment"][0, 1] != 0.0
 
 
+def test_vtu_has_the_stresses_of_membranes_on_their_faces(tmp_path: Path) -> None:
+    """A quad and a triangle of cloth that is pulled: of each face the mean over its cuts, and the extremes of these;
+    lines have none. Cloth of a known strength has its utilisation."""
+    square = {
+        "vertices": [[0, 0, 0], [1, 0, 0], [1, 1, 0.2], [0, 1, 0], [2, 0, 0.1]],
+        "faces": [[0, 1, 2, 3], [1, 4, 2]],
+    }
+    cloth = {
+        "kind": "membrane",
+        "mesh": "sail",
+        "material": "PVC-polyester I",
+        "warp": [1, 0, 0],
+        "prestress": [4, 3, 0],
+    }
+    spec = {
+        "units": {"force": "kN"},
+        "particles": square["vertices"],
+        "meshes": {"sail": square},
+        "forces": [cloth, {"kind": "springs", "particles": [[2, 4]]},
+                   {"kind": "unary", "particles": [2], "vector": [0, 0, 1]}],
+        "anchors": [{"particles": [0, 1, 3, 4]}],
+    }  # fmt: skip
+    found = hookean.relax(Scene.read(spec))
+    found.save(tmp_path / "sail.vtu")
+    read, own = meshio.read(tmp_path / "sail.vtu"), found.force("membrane")
+    place = {block.type: i for i, block in enumerate(read.cells)}
+    warp = read.cell_data["membrane warp [kN/m]"]
+    assert warp[place["quad"]] == pytest.approx([own["warp"][:4].mean()], rel=1e-14)
+    assert warp[place["triangle"]].tolist() == own["warp"][4:].tolist() and not warp[place["line"]].any()
+    assert read.cell_data["membrane largest [kN/m]"][place["quad"]].tolist() == [own["largest"][:4].max()]
+    assert read.cell_data["membrane least [kN/m]"][place["quad"]].tolist() == [own["least"][:4].min()]
+    assert read.cell_data["membrane utilisation [-]"][place["quad"]].tolist() == [own["utilisation"][:4].max()]
+    assert read.cell_data["membrane state [-]"][place["quad"]].tolist() == [own["state"][:4].min()]
+
+
 def test_names_are_plain_and_each_there_once() -> None:
     assert plain_names(["edge cable", "edge-cable", "1", "é", "edge cable"]) == [
         "EDGE_CABLE", "EDGE_CABLE_2", "G_1", "GROUP", "EDGE_CABLE_3",

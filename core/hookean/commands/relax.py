@@ -59,7 +59,7 @@ class Options:
     picture: Annotated[str | None, typer.Option(metavar="PATH", help="Draw a picture (PNG) of the result")] = None
     check: Annotated[
         Path | None,
-        typer.Option(help="Limits (TOML, JSON) of force, strain, displacement, reaction, slack elements to check"),
+        typer.Option(help="Limits (TOML, JSON) of force, stress, moment, strain, displacement, reaction, slack"),
     ] = None
     case: Annotated[
         str | None,

@@ -9,6 +9,8 @@ A limits file is TOML (or JSON). Limits of the whole model come first; `[force.N
     max_displacement = 0.1   # of any particle from its start
     max_reaction = 500
     max_utilisation = 0.5    # part of the strength of any element
+    max_stress = 235e6       # of lines and beams of a section, of either sign
+    max_moment = 20          # bending of beams about either axis
     max_slack = 0            # number of tension-only elements that hang slack
     units = {length = "m", force = "kN"}   # without it those of the scene
 
@@ -34,7 +36,7 @@ from hookean.analysis.load_cases import slack_elements
 from hookean.errors import InputError
 from hookean.files import cells
 from hookean.running.result import Result
-from hookean.running.utilisation import NAME, dimensions
+from hookean.running.utilisation import NAME, STRESS, dimensions
 from hookean.system.system import System
 from hookean.values.units import Units
 
@@ -54,8 +56,17 @@ LIMITS = {
     "max_displacement": "length",
     "max_reaction": "force",
     "max_utilisation": "",
+    "max_stress": "force/length^2",
+    "max_moment": "moment",
     "max_slack": "",
 }
+BENDING = ("My0", "Mz0", "My1", "Mz1")
+NEEDED = {
+    "max_utilisation": "no element has a known strength; give materials with strength, or strength, to the forces",
+    "max_stress": "no element has a known section; give material and section to springs or beams",
+    "max_moment": "no element is a beam; give max_moment for beams",
+}
+"""Limits of what not every element has, and what to do where none has it."""
 _SCOPES = ("force", "layer", "anchor")
 
 
@@ -335,9 +346,8 @@ def _check(
             at = int(np.flatnonzero(mask)[np.argmax(values[mask])])
             if float(values[at]) > worst:
                 worst, place = float(values[at]), _spot(part, at)
-        if limit == "max_utilisation" and not place:
-            said = "no element has a known strength; give materials with strength, or strength, to the forces"
-            raise InputError(f"{where} max_utilisation", said)
+        if limit in NEEDED and not place:
+            raise InputError(f"{where} {limit}", NEEDED[limit])
         sign = -1.0 if limit == "min_force" else 1.0
         if worst * scale > sign * limits[limit]:
             unit = units.of(dimension)
@@ -371,6 +381,11 @@ def _values(part: Section, limit: str, moved: Floats) -> Floats | None:
         return np.abs(part.columns["strain"]) if "strain" in part.columns else None
     if limit == "max_utilisation":
         return part.columns.get(NAME)
+    if limit == "max_stress":
+        return np.abs(part.columns[STRESS]) if STRESS in part.columns else None
+    if limit == "max_moment":
+        ends = [np.abs(part.columns[name]) for name in BENDING if name in part.columns]
+        return np.max(ends, axis=0) if ends else None
     if not part.internal:
         return None
     return part.columns["force"] if limit == "max_force" else -part.columns["force"]

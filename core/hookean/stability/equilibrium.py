@@ -51,9 +51,9 @@ class Equilibrium:
     """The stability of a shape and how accurate it is.
 
     `stability`; of an unstable shape or a mechanism the particle that moves most in the softest mode (`soft_particle`)
-    and how many modes are unstable or meet no resistance (`soft_modes`), where that was counted. `position_errors` (k,)
-    [length] of the connected components: the largest movement that one more exact step would make, within a factor of
-    3; None where that is not known. Reasons are sentences.
+    and how many modes are unstable or meet no resistance (`soft_modes`), where that was counted; of a stable shape how
+    many turns of hinged joints do. `position_errors` (k,) [length] of the connected components: the largest movement
+    that one more exact step would make, within a factor of 3; None where that is not known. Reasons are sentences.
     """
 
     stability: Stability
@@ -111,7 +111,7 @@ def _only_turns(system: System, state: State, free: Floats, found: Balance, rest
     the tangent K of rotations alone does not resist: where K is at least 0, K_rr t = 0 means that K t = 0. Joints with
     eccentric ends of beams, which swing, are left out."""
     slots = system.slots
-    if not len(slots):
+    if not len(slots) or system.films is not None:
         return False
     turning = free.copy()
     turning[: slots.count] = 0.0

@@ -9,10 +9,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.files.exchange.beams import Beams
+from hookean.forces.base import complete
 from hookean.forces.beam import Beam
+from hookean.forces.membrane import Membrane
+from hookean.forces.soapfilm import halves
 from hookean.forces.springs import Springs
 from hookean.forces.support import Support
 from hookean.running.result import Result
+from hookean.running.utilisation import NAME, dimensions
 from hookean.system.system import System, compile
 from hookean.values.units import Units
 
@@ -47,7 +51,8 @@ class Structure:
     `loads` and `reactions` (n, 3) [force], `moments` and `reaction_moments` (n, 3) [force length] of both, `held`
     (n, 3) axes, `clamped` (n, 3) rotations about axes, `elastic` (n, 6) the stiffness of elastic supports along and
     about axes [force/length, force length]; `faces` (m, 4) of meshes by name, in particles; `beams` of each force that
-    has some; `others` are the names of forces between particles that are neither."""
+    has some; `others` are the names of forces between particles that are neither; `cloth` has the stresses of membranes
+    by the name of their mesh, of each of its faces (see `_cloth`)."""
 
     points: Floats
     displacements: Floats
@@ -63,6 +68,7 @@ class Structure:
     beams: tuple[Beams, ...] = ()
     others: tuple[str, ...] = ()
     elastic: Floats = field(default_factory=lambda: np.zeros((0, 6)))
+    cloth: dict[str, dict[str, Floats]] = field(default_factory=dict)
 
     @classmethod
     def of(cls, result: Result, system: System | None = None) -> Structure:
@@ -101,6 +107,7 @@ class Structure:
             ),
             tuple(_others(result)),
             _elastic(result, count),
+            _cloth(system, result),
         )
 
     @property
@@ -115,16 +122,17 @@ class Structure:
 
 
 def _lines(system: System, result: Result) -> list[Lines]:
-    found, known = [], _axial(system)
+    found, axial = [], _axial(system)
     for number, (force, entry) in enumerate(zip(system.scene.forces, result.forces, strict=True)):
         pairs = np.asarray(entry.get("particles", ()))
         if type(force).role != "internal" or pairs.ndim != 2 or pairs.shape[1] != 2:
             continue
-        columns = {n: np.asarray(entry[n], dtype=float) for n in type(force).outputs if np.ndim(entry.get(n, 0.0)) == 1}
-        stiffness, rest = known.get(number, (np.zeros(len(pairs)), np.zeros(len(pairs))))
+        known = dimensions(force.kind_name)
+        columns = {n: np.asarray(entry[n], dtype=float) for n in known if np.ndim(entry.get(n, 0.0)) == 1}
+        stiffness, rest = axial.get(number, (np.zeros(len(pairs)), np.zeros(len(pairs))))
         name = force.name or force.kind_name
         free = isinstance(force, Springs) and _one_way(force)
-        found.append(Lines(name, force.kind_name, pairs, columns, dict(type(force).outputs), stiffness, rest, free))
+        found.append(Lines(name, force.kind_name, pairs, columns, known, stiffness, rest, free))
     return found
 
 
@@ -137,6 +145,33 @@ def _elastic(result: Result, count: int) -> Floats:
             at = np.asarray(entry["particles"]).reshape(-1)
             for first, given in ((0, force.stiffness), (3, force.rotation_stiffness)):
                 np.add.at(found[:, first : first + 3], at, np.broadcast_to(given, (len(at), 3)))
+    return found
+
+
+def _cloth(system: System, result: Result) -> dict[str, dict[str, Floats]]:
+    """Columns of membranes, with their units, by mesh and face: of a quad the mean of its triangles, the largest and
+    least stress and the utilisation of any, and the loosest state."""
+    found: dict[str, dict[str, Floats]] = {}
+    for force, entry in zip(system.scene.forces, result.forces, strict=True):
+        if not isinstance(force, Membrane) or "particles" not in entry:
+            continue
+        faces = system.places.faces(force.mesh)
+        _, share, face = halves(complete(faces))
+        own: dict[str, Floats] = {}
+        for name, dimension in dimensions(force.kind_name).items():
+            if name not in entry:
+                continue
+            values, size = np.asarray(entry[name], dtype=float), int(face.max(initial=-1)) + 1
+            if name in ("least", "state"):
+                column = np.full(size, np.inf)
+                np.minimum.at(column, face, values)
+            elif name in ("largest", NAME):
+                column = np.full(size, -np.inf)
+                np.maximum.at(column, face, values)
+            else:
+                column = np.bincount(face, values * share, size) / np.bincount(face, share, size)
+            own[f"{force.kind_name} {name} [{system.scene.units.of(dimension) or '-'}]"] = column
+        found.setdefault(force.mesh, own)
     return found
 
 

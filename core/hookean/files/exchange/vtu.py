@@ -30,6 +30,8 @@ def write(structure: Structure, target: Path) -> None:
         data[f"{column} [{structure.units.of(dimension) or '-'}]"] = [
             lines if kind == "line" else np.zeros(len(rows)) for kind, rows in blocks
         ]
+    for column in dict.fromkeys(name for columns in structure.cloth.values() for name in columns):
+        data[column] = _of_faces(structure, column, blocks)
     length, force, moment = (structure.units.of(unit) for unit in ("length", "force", "force length"))
     point_data = {
         f"displacement [{length}]": structure.displacements,
@@ -46,6 +48,17 @@ def write(structure: Structure, target: Path) -> None:
         place = Path(folder) / "structure.vtu"
         mesh.write(place, file_format="vtu")
         put(target, place.read_bytes(), lambda back: None)
+
+
+def _of_faces(structure: Structure, column: str, blocks: list[tuple[str, Any]]) -> list[Any]:
+    """A column of membranes for each block of cells, in the order of `cells`."""
+    whole = np.concatenate(
+        [structure.cloth.get(name, {}).get(column, np.zeros(len(f))) for name, f in structure.faces.items()]
+    )
+    faces = np.concatenate(list(structure.faces.values()))
+    three = faces[:, 2] == faces[:, 3]
+    chosen = {"triangle": three, "quad": ~three}
+    return [whole[chosen[kind]] if kind in chosen else np.zeros(len(rows)) for kind, rows in blocks]
 
 
 def cells(structure: Structure) -> tuple[list[tuple[str, Any]], list[Any]]:
