@@ -30,7 +30,7 @@ FLAGS = [
     "--disable-component-update",
     "--disable-sync",
     "--js-flags=--expose-gc",
-    # pages that draw the same things share what the software renderer has compiled: a fifth less of its time
+    # pages that draw the same things share what the software renderer has compiled: a tenth less of its time
     "--enable-angle-features=preferGlobalPipelineCache",
 ]
 LATEST = """([what, ...told]) => new Promise((done) => {

@@ -198,7 +198,7 @@ async def state(
     view: Annotated[
         str,
         Query(
-            max_length=48_000,
+            max_length=16_000,
             description="Of `hookean`: how it is looked at, a JSON object as text, or that as raw deflate in base64url",
         ),
     ] = "{}",

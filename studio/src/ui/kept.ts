@@ -5,8 +5,8 @@ import { packed } from "../view/packed";
 import { remember, remembered } from "./theme";
 
 const name = (key: string) => `hookean-groups-${key}`;
-/** Characters of a view, packed, that the service takes, and that an address may have in every browser. */
-const LONGEST = 40_000;
+/** Characters of a packed view: the service accepts heads of 16 kB, and addresses of this length work everywhere. */
+const LONGEST = { file: 14_000, link: 40_000 };
 
 export const keptGroups = (key: string) => remembered<Groups>(name(key), {});
 
@@ -39,8 +39,14 @@ export const keptRecipe = (key: string) => remembered<Recipe | null>(recipes(key
 
 export const keepRecipe = (key: string, recipe: Recipe) => remember(recipes(key), recipe);
 
+interface Fitted {
+  /** Packed. */
+  view: string;
+  notes: string[];
+}
+
 /** The view as a file or an address keeps it, packed, with the design problem, and sentences on what is too long. */
-export async function fitting(view: Kept, design: Problem, place: string): Promise<{ view: string; notes: string[] }> {
+export async function fitting(view: Kept, design: Problem, place: keyof typeof LONGEST): Promise<Fitted> {
   const { groups, recipe, ...rest } = view;
   const notes: string[] = [];
   let kept: Kept = rest;
@@ -48,7 +54,7 @@ export async function fitting(view: Kept, design: Problem, place: string): Promi
   const keep = async (more: Partial<Kept>, note: string) => {
     const wider = { ...kept, ...more };
     const longer = await packed(JSON.stringify(wider));
-    if (longer.length <= LONGEST) [kept, made] = [wider, longer];
+    if (longer.length <= LONGEST[place]) [kept, made] = [wider, longer];
     else notes.push(note);
   };
   if (isAny(design)) await keep({ design }, `The design problem is too large for the ${place}; this browser keeps it.`);

@@ -54,7 +54,8 @@ export const plain = (sentence: string) =>
     .replace(/\/forces\/(\d+)(?:\/(\w+))?/g, (_, number: string, field?: string) =>
       field ? `${field.replaceAll("_", " ")} of force ${number}` : `force ${number}`,
     )
-    .replace(/^the ([a-z])/, (_, first: string) => `The ${first}`);
+    .replace(/(^|\. )the ([a-z])/g, (_, before: string, first: string) => `${before}The ${first}`)
+    .replaceAll("time_step", "the time step");
 
 const NUMBERED = /\b(particle|spring)(?: (\d+)|s (\d+(?:(?:, and |, | and )\d+(?![\d.]))*))/g;
 
