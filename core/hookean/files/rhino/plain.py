@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from hookean.discretize.breps import is_trimmed, mesh_faces
 from hookean.discretize.meshes import as_mesh
 from hookean.errors import InputError
-from hookean.files.rhino.model import Model, Object, expand, rhino
+from hookean.files.rhino.model import Model, Object, expand, points_in, rhino
 
 Array = NDArray[np.float64]
 KINDS = ("point", "points", "line", "polyline", "curve", "surface", "brep", "mesh")
@@ -48,7 +48,7 @@ def _plain(item: Object, divisions: tuple[int, int] | None) -> dict[str, Any] | 
     if isinstance(geometry, rhino.Point):
         return {"kind": "point", "points": _rows([geometry.Location])}
     if isinstance(geometry, rhino.PointCloud):
-        return {"kind": "points", "points": _rows(geometry.GetPoints())}
+        return {"kind": "points", "points": _rows(points_in(geometry))}
     if isinstance(geometry, rhino.Mesh):
         mesh = as_mesh(geometry)
         return {"kind": "mesh", "vertices": mesh.vertices, "faces": mesh.faces}
