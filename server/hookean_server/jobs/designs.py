@@ -14,9 +14,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hookean.designing.answer import Design, DesignStatus
+from hookean.designing.answer import Design, DesignStatus, once
 from hookean.designing.checks import checked
-from hookean.designing.exploring import once
 from hookean.designing.search import design
 from hookean.designing.sensitivity import sensitivity
 from hookean.errors import InputError
