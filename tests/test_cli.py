@@ -229,6 +229,7 @@ def test_an_empty_file_is_reported_as_empty(folder: Path) -> None:
         ("-o", "new/../cable.3dm"),
         ("-o", "out.dwg"),
         ("-o", "out.3dm", "--csv", "out.3dm"),
+        ("-o", "x" * 300 + ".3dm"),
         ("--csv", "cable.3dm"),
         ("--recipe", "recipe.toml", "--csv", "recipe.toml"),
         ("--recipe", "recipe.toml", "-o", "out.3dm", "--picture", "picture.jpg"),

@@ -69,6 +69,7 @@ def test_particles_are_pinned_released_and_retargeted_while_it_runs():
     [
         ({"forces": {"cable": {"stiffness": -1}}}, "/forces/cable/stiffness"),
         ({"forces": {"cabel": {"stiffness": 1}}}, "/forces/cabel"),
+        ({"forces": {"0": {"stiffness": 1}, "cable": {"stiffness": 2}}}, "/forces/cable"),  # the same force
         ({"forces": {"2": {"stiffness": 1}}}, "/forces/2"),  # there are two, counted from 0
         ({"forces": {"cable": {"particles": [[0, 1]]}}}, "/forces/cable/particles"),
         ({"move": [{"anchor": "ends", "targets": [[0, 0, 0]]}]}, "/move/0/targets"),

@@ -76,6 +76,7 @@ def test_the_command_line_relaxes_it(moved: Simulation, tmp_path: Path, monkeypa
         (lambda data: repacked(data, "hookean.json", b"[]"), "hookean.json is not a JSON object"),
         (lambda data: repacked(data, "simulation.npz", b"PK"), "not a saved simulation"),
         (lambda data: repacked(data, "simulation.npz", None), "damaged, or not a .hookean file"),
+        (lambda data: repacked(data, "simulation.npz", complex_speeds(data)), "not a saved simulation"),
         (lambda data: repacked(data, "view.json", b"{}", zipfile.ZIP_DEFLATED), "compressed"),
     ],
 )
@@ -83,6 +84,14 @@ def test_damage_is_one_sentence(moved: Simulation, change, said: str):
     data = change(project.write(project.Project(moved)))
     with pytest.raises(InputError, match=said):
         project.read(data, "a.hookean")
+
+
+def complex_speeds(data: bytes) -> bytes:
+    """The saved simulation with speeds that no compiled loop takes."""
+    stream = io.BytesIO()
+    with zipfile.ZipFile(io.BytesIO(data)) as file, np.load(io.BytesIO(file.read("simulation.npz"))) as arrays:
+        np.savez(stream, **{**arrays, "v": arrays["v"].astype(complex)})
+    return stream.getvalue()
 
 
 def repacked(data: bytes, name: str, part: bytes | None, how: int = zipfile.ZIP_STORED) -> bytes:

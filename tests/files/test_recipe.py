@@ -285,6 +285,9 @@ def test_a_file_without_units_takes_those_of_the_recipe(tmp_path: Path) -> None:
 def test_recipes_are_toml_or_json() -> None:
     toml = parse_tables('[[forces]]\nkind = "springs"\nlines = "*"\n')
     assert parse_tables('{"forces": [{"kind": "springs", "lines": "*"}]}') == toml
+    for text in ("a = " + "[" * 5000, "a = " + "9" * 5000):
+        with pytest.raises(InputError, match=r"bridge.toml: (nested too deeply|a whole number with too many)"):
+            parse_tables(text, "bridge.toml")
     with pytest.raises(InputError, match=r"bridge.toml: not valid TOML"):
         parse_tables("[[forces", "bridge.toml")
     with pytest.raises(InputError, match="not valid JSON"):

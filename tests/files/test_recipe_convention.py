@@ -13,6 +13,7 @@ import rhino3dm as _rhino3dm
 from hookean.errors import InputError
 from hookean.files.recipe.recipe import understand
 from hookean.files.rhino import threedm
+from hookean.files.rhino.plain import plain
 from hookean.files.rhino.threedm import Additions, NewLayer, NewObject
 from hookean.values.mesh import Mesh
 
@@ -90,12 +91,40 @@ def test_user_text_overrides_for_each_object(draw: Callable[..., Any]) -> None:
         ("divide", "1.5"),
         ("load", "1, 2"),
         ("load", "nan"),
+        ("stiffness", "1,000"),  # 1 or 1000
     ],
 )
 def test_user_text_that_is_no_number_is_told_with_its_object(draw: Callable[..., Any], key: str, text: str) -> None:
     model = draw(NewObject(LINE, "springs", "tie", user_text={key: text}))
     with pytest.raises(InputError, match=rf'"tie" .*user text {key}'):
         understand(model)
+
+
+def test_a_comma_in_user_text_is_a_decimal_one(draw: Callable[..., Any]) -> None:
+    """Where it cannot be one of thousands."""
+    model = draw(NewObject(LINE, "springs", user_text={"stiffness": "2,5", "rest_factor": "0,125"}))
+    (force,) = scene_of(model).forces
+    assert (np.asarray(force.stiffness).item(), np.asarray(force.rest_factor).item()) == (2.5, 0.125)
+
+
+def test_an_empty_cloud_of_points_holds_nothing(draw: Callable[..., Any], tmp_path: Path) -> None:
+    """rhino3dm has no list of its points."""
+    model = rhino.File3dm()
+    for name in ("springs", "anchors"):
+        layer = rhino.Layer()
+        layer.Name = name
+        model.Layers.Add(layer)
+    attributes = rhino.ObjectAttributes()
+    attributes.LayerIndex = 1
+    model.Objects.AddPointCloud(rhino.PointCloud(), attributes)
+    model.Objects.AddPoint(rhino.Point3d(0, 0, 0), attributes)
+    attributes.LayerIndex = 0
+    model.Objects.AddLine(rhino.Point3d(0, 0, 0), rhino.Point3d(1, 0, 0), attributes)
+    assert model.Write(str(tmp_path / "cloud.3dm"), 8)
+    read = threedm.read(tmp_path / "cloud.3dm")
+    assert scene_of(read).anchors[0].points.tolist() == [[0, 0, 0]]
+    clouds = [one["points"] for one in plain(read, None)["objects"] if one["kind"] == "points"]
+    assert [len(points) for points in clouds] == [0]
 
 
 def test_loads_without_a_size_are_left_out(draw: Callable[..., Any]) -> None:

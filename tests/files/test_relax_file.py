@@ -500,6 +500,9 @@ def test_limits_on_what_is_not_there_are_told_after_everything_is_written(cable:
     assert (tmp_path / "out.3dm").exists() and caught.value.found.result.converged
     with pytest.raises(InputError, match=r"^l\.toml /max_froce: "):
         tables.read_limits("max_froce = 1", "l.toml")
+    for empty in ("", "{}", '[units]\nforce = "kN"\n', "[force.cable]\n"):  # would pass whatever the result
+        with pytest.raises(InputError, match="has no limit"):
+            tables.read_limits(empty, "l.toml")
 
 
 def test_wrong_files_are_called_what_they_are(cable: Path, tmp_path: Path) -> None:

@@ -82,6 +82,22 @@ def test_every_kind_of_object(client: httpx.Client, drawing: Path) -> None:
     assert len(by["brep"]["mesh"]["faces"]) > 100 and "degree_u" not in by["brep"]
 
 
+def test_damaged_objects_are_left_out_by_name_and_no_other(tmp_path: Path) -> None:
+    """No number that is not finite comes out, and a damaged mesh does not cost the rest of the file."""
+    file, holed = rhino3dm.File3dm(), rhino3dm.Mesh()
+    for x in (0.0, 1.0, 2.0):
+        holed.Vertices.Add(x, 0.0, 0.0)
+    holed.Faces.AddFace(0, 1, 77)
+    bent = rhino3dm.NurbsCurve.Create(False, 2, [Point(0, 0, 0), Point(float("nan"), 1, 0), Point(2, 0, 0)])
+    bad = [rhino3dm.Point(Point(float("nan"), 0, 0)), bent, holed]
+    for geometry in (*bad, rhino3dm.Point(Point(1, 2, 3))):
+        file.Objects.Add(geometry, rhino3dm.ObjectAttributes())
+    assert file.Write(str(tmp_path / "damaged.3dm"), 8)
+    found = threedm_plain.plain(threedm.read(tmp_path / "damaged.3dm"))
+    assert [one["points"].tolist() for one in found["objects"]] == [[[1.0, 2.0, 3.0]]]
+    assert [sentence.split()[0] for sentence in found["warnings"]] == ["Point", "NurbsCurve", "Mesh"]
+
+
 def test_it_is_what_the_core_reads(client: httpx.Client, drawing: Path) -> None:
     wanted = threedm_plain.plain(threedm.read(drawing))
     found = read(client, drawing.read_bytes(), arrays="buffer").json()

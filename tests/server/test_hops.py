@@ -121,6 +121,16 @@ def test_a_cable_as_the_component_sends_it(hops: httpx.Client) -> None:
     assert found["Springs"][1]["From"] == found["Springs"][0]["To"] == found["Particles"][1]
 
 
+def test_an_input_of_another_version_is_told(hops: httpx.Client) -> None:
+    """A value that is not used would be missed; an input without values has none to miss."""
+    found = {}
+    for number, tree in enumerate((branch("System.Double", 2.0), {"{0}": []}, {})):
+        found[number] = hops.post("/solve", json=cable(Stifness=tree)).json()
+    assert [len(one["warnings"]) for one in found.values()] == [1, 0, 0]
+    assert found[0]["warnings"][0].startswith("Stifness is no input") and "Stiffness" in found[0]["warnings"][0]
+    assert found[0]["values"] == found[1]["values"] == found[2]["values"]
+
+
 def test_the_same_inputs_give_the_same_bytes(hops: httpx.Client) -> None:
     """Hops keeps answers for ever."""
     assert hops.post("/solve", json=cable()).content == hops.post("/solve", json=cable()).content
@@ -221,7 +231,8 @@ def test_defaults_stand_in(hops: httpx.Client) -> None:
     truth = hops.post("/solve", json=cable()).json()
     assert hops.post("/solve", json=without("Stiffness")).json() == truth
     assert hops.post("/solve", json=cable(Stiffness={})).json() == truth
-    assert hops.post("/solve", json=cable(Other=branch("System.Double", 1.0))).json() == truth
+    other = hops.post("/solve", json=cable(Other=branch("System.Double", 1.0))).json()
+    assert len(other["warnings"]) == 1 and {**other, "warnings": []} == truth
 
 
 FAULTY: dict[str, tuple[Any, str]] = {

@@ -254,10 +254,11 @@ def test_faulty_forms(client: httpx.Client, form: dict[str, Any], pointer: str) 
         ("/v1/sessions?arays=list", ["/query/arays"]),
         ("/v1/health?x=1&x=2&y", ["/query/x", "/query/y"]),
         ("/v1/health?y=&x=1", ["/query/y", "/query/x"]),
+        ("/v1/sessions/none/state?format=npz&format=json", ["/query/format"]),
     ],
 )
-def test_unknown_parameters_of_an_address_are_named(client: httpx.Client, address: str, faults: list[str]) -> None:
-    """A misspelt one would have no effect, unseen; the sentence lists those that there are."""
+def test_unknown_and_repeated_parameters_are_named(client: httpx.Client, address: str, faults: list[str]) -> None:
+    """A misspelt one, or one of two, would have no effect, unseen; the sentence lists those that there are."""
     said = problem(client.get(address), 422, "invalid-input")
     assert [fault["pointer"] for fault in said["errors"]] == faults
 

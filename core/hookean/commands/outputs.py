@@ -19,9 +19,9 @@ def place(given: str | None, source: Path, ending: str, *, many: bool = False) -
     if given is None:
         return None
     path = Path(given)
-    if given.endswith(("/", os.sep)) or path.is_dir():
+    if given.endswith(("/", os.sep)) or os.path.isdir(path):  # false for a path too long, where Path.is_dir raises
         return path / f"{source.stem}{ending}"
-    if many and (path.exists() or path.suffix):
+    if many and (os.path.exists(path) or path.suffix):
         raise InputError(given, "is not a folder; for several input files give one")
     return path / f"{source.stem}{ending}" if many else path
 
@@ -30,15 +30,16 @@ def check(targets: Iterable[Path | None], sources: Iterable[Path | None]) -> Non
     """Raises InputError if a target is an invalid path, one of the sources, or another target."""
     from hookean.atomic_write import check_target
 
-    read, seen = [source for source in sources if source is not None], set[Path]()
+    read, seen = [source for source in sources if source is not None], set[str]()
     for target in targets:
         if target is None:
             continue
         for source in (*read, None):
             check_target(target, source, folder=False)
-        if target.resolve() in seen:
+        full = os.path.realpath(target)  # of a link to itself, too, where Path.resolve raises
+        if full in seen:
             raise InputError(str(target), "would be written twice; give files of different names")
-        seen.add(target.resolve())
+        seen.add(full)
 
 
 @contextlib.contextmanager

@@ -246,7 +246,7 @@ def per_object(parts: Sequence[Section], units: Units) -> list[Row]:
 
 
 def read_limits(text: str, name: str = "limits") -> dict[str, Any]:
-    """Limits from TOML or JSON text; InputError where it is neither or names an unknown limit."""
+    """Limits from TOML or JSON text; InputError where it is neither, names an unknown limit or has none."""
     from hookean.scene.text import parse_tables
 
     limits = parse_tables(text, name)
@@ -257,6 +257,9 @@ def read_limits(text: str, name: str = "limits") -> dict[str, Any]:
             raise InputError(f"{name} /{scope}", f"give tables such as [{scope}.NAME]")
         for key, table in tables.items():
             _known(table, f"{name} /{scope}/{key}", tuple(LIMITS))
+    scopes = [table for scope in _SCOPES for table in limits.get(scope, {}).values()]
+    if not any(key in LIMITS for table in (limits, *scopes) for key in table):
+        raise InputError(name, f"has no limit, so that nothing would be checked; give one of {', '.join(LIMITS)}")
     return limits
 
 

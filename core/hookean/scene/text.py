@@ -46,6 +46,10 @@ def parse_tables(text: str, name: str = "recipe") -> dict[str, Any]:
         return tomllib.loads(plain)
     except tomllib.TOMLDecodeError as error:
         raise _not_toml(plain, name, str(error)) from None
+    except RecursionError:
+        raise InputError(name, f"nested too deeply; a scene needs fewer than {DEEPEST} levels") from None
+    except ValueError:  # of int(), which reads at most some thousand digits
+        raise InputError(name, "a whole number with too many digits; write it as a decimal number") from None
 
 
 def _half_a_character(value: Any) -> str:

@@ -49,9 +49,11 @@ class State:
         )
 
     def fits(self, other: State) -> bool:
-        """Whether both are states of one system: equal shapes, finite numbers."""
+        """Whether both are states of one system: equal shapes and types, finite numbers."""
         mine, others = [self.x, self.v, self.free, *self.memory], [other.x, other.v, other.free, *other.memory]
-        same = len(mine) == len(others) and all(a.shape == b.shape for a, b in zip(mine, others, strict=True))
+        same = len(mine) == len(others) and all(
+            (a.shape, a.dtype) == (b.shape, b.dtype) for a, b in zip(mine, others, strict=True)
+        )
         return same and all(np.isfinite(a).all() for a in mine)
 
     def arrays(self) -> dict[str, Floats]:

@@ -168,7 +168,13 @@ class Inputs:
         name = str(entry.get("ParamName")).removeprefix("RH_IN:").strip()
         parameter = self._parameters.get(name)
         if parameter is None:
-            return  # of an older version of the definition
+            if any(tree.values()):  # a definition of another version, whose values would be missed in silence
+                known = ", ".join(self._parameters) or "none"
+                self.warnings.append(
+                    f"{name[:80]} is no input of this function and is not used; its inputs: {known}. "
+                    "Make the Hops component again from its path."
+                )
+            return
         if name in self._given:
             raise InputError(where, f"{name} is given twice")
         if not all(_PATH.fullmatch(path) for path in tree):

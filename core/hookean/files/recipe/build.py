@@ -145,7 +145,7 @@ class _Builder:
         own = self._split(table, pointer)
         used: Shape | None = None
         said = "anchor" if group == "anchors" else str(table.get("kind", ""))
-        if table.get("name"):
+        if table.get("name") and isinstance(table["name"], str):
             said += f' "{table["name"]}"'
         said += " that is carried along" if group == "geometry" else ""
         for name in PLACE_FIELDS:

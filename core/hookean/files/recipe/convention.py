@@ -305,8 +305,15 @@ def _recipe(drawing: Drawing, reading: _Reading, given: Mapping[str, Any]) -> di
 
 
 def number_of(item: Item, key: str) -> float:
-    """The number of at least 0 that an item's user text gives. InputError for anything else."""
+    """The number of at least 0 that an item's user text gives; its comma is a decimal one.
+
+    InputError for anything else, and for a comma that may separate thousands, such as that of 1,000.
+    """
     text = item.text[key].strip()
+    if re.fullmatch(r"[1-9]\d{0,2},\d{3}", text):
+        whole, decimal = text.replace(",", ""), text.replace(",", ".")
+        said = f'"{text}" given, which may mean {whole} or {decimal}; write one of these'
+        raise InputError(f"{item.label}, user text {key}", said)
     try:
         value = float(text.replace(",", ".") if text.count(",") == 1 else text)
     except ValueError:

@@ -28,7 +28,9 @@ def pulling(placed: Placed, led: Led, factor: float, meshes: Callable[[str], Any
     for number, (table, shape) in enumerate(placed):
         pointer, kind = f"/forces/{number}", table.get("kind")
         parts = [(table, shape)]
-        for items in led(table, pointer, f'{kind} "{table["name"]}"' if table.get("name") else str(kind)):
+        for items in led(
+            table, pointer, f'{kind} "{table["name"]}"' if isinstance(table.get("name"), str) else str(kind)
+        ):
             parts = pulled(table, shape, items, factor, pointer)
             notes.append(f"forces[{number}] {kind}: to {shapes.counted(items)}")
         first.append(parts[0])

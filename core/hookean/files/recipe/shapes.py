@@ -17,7 +17,7 @@ from hookean.discretize.meshes import as_mesh, corners, naked_vertices, tidy_fac
 from hookean.errors import InputError
 from hookean.files.recipe.drawing import Item
 from hookean.files.recipe.select import count
-from hookean.files.rhino.model import rhino
+from hookean.files.rhino.model import points_in, rhino
 from hookean.values.mesh import Mesh
 
 Floats = NDArray[np.float64]
@@ -163,7 +163,7 @@ def points_of(item: Item, feature: str, split: Split | None, pointer: str) -> Fl
     """Points `(n, 3)` in file units of a point or curve; `feature` is "", start, ends, vertices or inner."""
     if is_point(item):
         cloud = item.geometry
-        every = [cloud.Location] if isinstance(cloud, rhino.Point) else cloud.GetPoints()
+        every = [cloud.Location] if isinstance(cloud, rhino.Point) else points_in(cloud)
         return np.array([(p.X, p.Y, p.Z) for p in every], dtype=np.float64).reshape(-1, 3)
     try:
         if feature in ("start", "ends"):

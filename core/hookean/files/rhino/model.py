@@ -250,3 +250,8 @@ def _transformed(item: Object, xform: Any, name: str) -> Any:
     if copy is None or not (copy.Transform(xform) or (copy.MakeDeformable() and copy.Transform(xform))):
         raise InputError(name, f"{item.kind} in a block cannot be moved to its place; explode the block in Rhino.")
     return copy
+
+
+def points_in(cloud: Any) -> list[Any]:
+    """The points of a point cloud; rhino3dm raises TypeError for those of an empty one."""
+    return list(cloud.GetPoints()) if cloud.Count else []

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from hookean.discretize.breps import is_trimmed, mesh_faces
 from hookean.discretize.meshes import as_mesh
 from hookean.errors import InputError
-from hookean.files.rhino.model import Model, Object, expand, rhino
+from hookean.files.rhino.model import Model, Object, expand, points_in, rhino
 
 Array = NDArray[np.float64]
 KINDS = ("point", "points", "line", "polyline", "curve", "surface", "brep", "mesh")
@@ -25,22 +25,38 @@ def plain(model: Model, divisions: tuple[int, int] | None = None) -> dict[str, A
     `(n, 3)`; `curve` and `surface` their NURBS form (see `hookean.discretize.nurbs`), knots as Rhino has them, weights
     where any is not 1; `mesh` has `vertices` and `faces`; `brep` has none. With `divisions` (u, v) surfaces and Breps
     also have `mesh`, as `mesh_faces` makes it, or `fault`, a sentence. Blocks are expanded; what hookean added, and
-    what lies in layouts, is left out. Raises InputError where blocks cannot be expanded.
+    what lies in layouts, is left out; damaged objects are, too, with a warning for each. Raises InputError where blocks
+    cannot be expanded.
     """
     drawn = [item for item in expand(model, model.foreign()) if not item.page]
+    damaged: list[str] = []
     warnings = list(model.warnings)
-    found = [(item, _plain(item, divisions)) for item in drawn]
+    found = [(item, _whole(item, divisions, damaged)) for item in drawn]
     objects = [
         {"id": str(item.id), "name": item.name, "layer": item.layer, "visible": item.visible, **what}
         for item, what in found
         if what is not None
     ]
-    if len(objects) < len(drawn):
-        other = len(drawn) - len(objects)
+    warnings += damaged
+    if other := len(drawn) - len(objects) - len(damaged):
         warnings.append(f"{other} objects are not points, curves, surfaces or meshes and are left out.")
     layers = [{"path": layer.path, "visible": layer.visible, "colour": list(layer.colour)} for layer in model.layers]
     about = {"name": model.name, "unit": model.unit, "metres": model.metres, "tolerance": model.tolerance}
     return {**about, "layers": layers, "objects": objects, "warnings": warnings}
+
+
+def _whole(item: Object, divisions: tuple[int, int] | None, damaged: list[str]) -> dict[str, Any] | None:
+    """What `_plain` reads of an object; nothing, and a sentence more in `damaged`, where a mesh of it cannot be read or
+    a number is not finite."""
+    try:
+        with np.errstate(divide="ignore", invalid="ignore"):  # weights of zero are told below
+            found = _plain(item, divisions)
+        if not all(np.isfinite(a).all() for a in (found or {}).values() if isinstance(a, np.ndarray)):
+            raise InputError("", "a coordinate, weight or knot is not finite; rebuild it in Rhino")
+    except InputError as error:
+        damaged.append(f"{item.kind} {item.id} on layer {item.layer} is left out: {error.sentence}.")
+        return None
+    return found
 
 
 def _plain(item: Object, divisions: tuple[int, int] | None) -> dict[str, Any] | None:
@@ -48,7 +64,7 @@ def _plain(item: Object, divisions: tuple[int, int] | None) -> dict[str, Any] | 
     if isinstance(geometry, rhino.Point):
         return {"kind": "point", "points": _rows([geometry.Location])}
     if isinstance(geometry, rhino.PointCloud):
-        return {"kind": "points", "points": _rows(geometry.GetPoints())}
+        return {"kind": "points", "points": _rows(points_in(geometry))}
     if isinstance(geometry, rhino.Mesh):
         mesh = as_mesh(geometry)
         return {"kind": "mesh", "vertices": mesh.vertices, "faces": mesh.faces}
