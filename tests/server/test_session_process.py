@@ -13,7 +13,6 @@ from typing import Any
 import pytest
 
 from hookean import Scene, Simulation
-from hookean.errors import InputError
 from hookean_server.problems import Problem
 from hookean_server.sessions import parts, rows
 from hookean_server.sessions import process as module
@@ -113,15 +112,3 @@ def test_drags_by_pins_are_few_rows_and_come_back_whole() -> None:
         assert again.state.revision == simulation.state.revision
         assert len(again.history.before) == len(simulation.history.before)
         again.undo(), simulation.undo()
-
-
-def test_stored_edits_that_name_a_force_twice_lead_to_what_they_led_to() -> None:
-    """Earlier ones could, and the later values held; new ones are refused."""
-    simulation = Simulation(Scene.read({**CABLE, "forces": [{**CABLE["forces"][0], "name": "net"}]}))
-    twice = {"forces": {"0": {"stiffness": 7.0, "damping": 1.0}, "net": {"stiffness": 9.0}}}
-    with pytest.raises(InputError, match="the same force"):
-        parts.make(simulation, json.dumps(twice).encode())
-    again = parts.restored(parts.saved(simulation), b"", [json.dumps(twice).encode()], [1])
-    force = again.system.scene.forces[0]
-    assert (float(force.stiffness), float(force.damping)) == (9.0, 1.0)
-    assert len(again.history.before) == again.state.revision == 1

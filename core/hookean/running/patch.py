@@ -79,7 +79,7 @@ def apply(system: System, state: State, patch: Patch) -> None:
     forces.update(_made_of(system.scene, forces, patch))
     scene = _with(system.scene, forces).replaced(settings=_settings(system, patch), **made)
     if patch.rewires:
-        removed = [numbered(system.scene, wanted, f"/remove/{i}") for i, wanted in enumerate(patch.remove)]
+        removed = [_numbered(system.scene, wanted, f"/remove/{i}") for i, wanted in enumerate(patch.remove)]
         scene = with_forces(system, scene, patch.add, removed)
         rewire(system, state, scene, added=len(patch.add))
     retune(system, state, scene, held)
@@ -236,7 +236,7 @@ def changed_forces(scene: Scene, given_values: Mapping[str, Mapping[str, Any]]) 
     """Forces by number with new values of columns, validated as if they had been given so at first."""
     changed: dict[int, Any] = {}
     for key, values in given_values.items():
-        number = numbered(scene, key, f"/forces/{key}")
+        number = _numbered(scene, key, f"/forces/{key}")
         fixed = [n for n in values if n in (*PLACES, "kind", "edges")]
         if fixed:
             raise InputError(f"/forces/{key}/{fixed[0]}", "cannot change during a run; send the changed scene")
@@ -281,7 +281,7 @@ def _made_of(scene: Scene, forces: Mapping[int, Any], patch: Patch) -> dict[int,
     return found
 
 
-def numbered(scene: Scene, wanted: str | int, pointer: str) -> int:
+def _numbered(scene: Scene, wanted: str | int, pointer: str) -> int:
     """The number of the one force of a name or number; a name that is a number counts as one where no force has it."""
     key = str(wanted)
     named = [i for i, f in enumerate(scene.forces) if f.name == wanted and key]
@@ -298,7 +298,7 @@ def _named_once(scene: Scene, given: Mapping[str, Any]) -> None:
     """InputError where two keys mean one force: one of two values for a column would be lost."""
     keys: dict[int, str] = {}
     for key in given:
-        first = keys.setdefault(numbered(scene, key, f"/forces/{key}"), key)
+        first = keys.setdefault(_numbered(scene, key, f"/forces/{key}"), key)
         if first != key:
             said = f"force {first!r}, given here too, is the same force; give all its columns under one of the two"
             raise InputError(f"/forces/{key}", said)

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from hookean.errors import InputError
 from hookean.files import saved as saved_file
 from hookean.files.documents import plain
-from hookean.running.patch import Patch, numbered
+from hookean.running.patch import Patch
 from hookean.running.result import Status, held_particles, kinetic
 from hookean.running.simulation import Simulation
 from hookean.scene.scene import Scene
@@ -100,25 +100,11 @@ def restored(base: bytes, state: bytes, edits: list[bytes], revisions: list[int]
         if arrays and revision > int(arrays["clock"][2]):
             _put(simulation, arrays)
             arrays = {}
-        make(simulation, _with_one_key(simulation, edit))
+        make(simulation, edit)
         simulation.state.revision = revision
     if arrays:
         _put(simulation, arrays)
     return simulation
-
-
-def _with_one_key(simulation: Simulation, body: bytes) -> bytes:
-    """A stored edit with one key for each force: of earlier ones that name a force twice, the later values hold."""
-    value = json.loads(body) if b'"forces"' in body else {}
-    given = value.get("forces") or {}
-    if len(given) < 2:
-        return body
-    keys: dict[int, str] = {}
-    joined: dict[str, dict[str, Any]] = {}
-    for key, columns in given.items():
-        first = keys.setdefault(numbered(simulation.system.scene, key, f"/forces/{key}"), key)
-        joined.setdefault(first, {}).update(columns)
-    return body if len(joined) == len(given) else json.dumps({**value, "forces": joined}).encode()
 
 
 def _put(simulation: Simulation, arrays: dict[str, NDArray[Any]]) -> None:
