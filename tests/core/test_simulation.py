@@ -74,6 +74,7 @@ def test_particles_are_pinned_released_and_retargeted_while_it_runs():
         ({"forces": {"cable": {"particles": [[0, 1]]}}}, "/forces/cable/particles"),
         ({"move": [{"anchor": "ends", "targets": [[0, 0, 0]]}]}, "/move/0/targets"),
         ({"move": [{"anchor": "nobody", "targets": []}]}, "/move/0/anchor"),
+        ({"move": [{"anchor": "ends", "shift": [0, 0, 1]}, {"anchor": 0, "shift": [0, 0, 2]}]}, "/move/1/anchor"),
         ({"release": [99]}, "/release/0"),
         ({"settings": {"time_step": -1}}, "/settings/time_step"),
         ({"geometry": []}, "/geometry"),

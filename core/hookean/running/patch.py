@@ -146,8 +146,12 @@ def _rows(system: System, group: Group, part: Part) -> Floats:
 def _held(system: System, state: State, patch: Patch) -> list[Held]:
     """The anchors after the patch: moved, thinned by releases, joined by pins."""
     held = [replace(h, targets=h.targets.copy()) for h in system.held]
+    moved: list[Held] = []
     for i, move in enumerate(patch.move):
         anchor = named(held, move.anchor, f"/move/{i}/anchor")
+        if any(anchor is other for other in moved):
+            raise InputError(f"/move/{i}/anchor", f"anchor {move.anchor!r} is moved twice; give one move for it")
+        moved.append(anchor)
         if move.shift is not None:
             anchor.targets = home(system, anchor, f"/move/{i}/shift") + move.shift
         elif move.targets is not None and len(move.targets) == len(anchor.particles):
