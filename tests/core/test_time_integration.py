@@ -318,6 +318,52 @@ def test_friction_stops_a_sliding_particle() -> None:
     assert state.x[0, 0] == pytest.approx(2.0**2 / (2 * 4.9), abs=4e-4)
 
 
+def test_damping_does_not_hold_what_static_friction_cannot() -> None:
+    """A spring pulls with 1.01 mu_s N a particle whose speed makes its damping push against that: it slides all the
+    same, to where the pull is mu_k N. In balance it is as soon as the pull is mu_s N."""
+    press, static, kinetic, stiffness = 1.0, 0.6, 0.5, 20.0
+    pull = 1.01 * static * press
+    running = Simulation(
+        Scene.read(
+            {
+                "particles": [[0, 0, 0], [1, 0, 0]], "velocities": [[5e-4, 0, 0], [0, 0, 0]],
+                "forces": [
+                    {"kind": "springs", "particles": [[0, 1]], "stiffness": stiffness, "damping": 20.0,
+                     "rest_length": 1.0 - pull / stiffness},
+                    {"kind": "unary", "particles": [0], "vector": [0, 0, -press]},
+                    {"kind": "floor", "static_friction": static, "kinetic_friction": kinetic},
+                ],
+                "anchors": [{"particles": [1]}], "settings": {"solver": "verlet", "time_step": 0.01},
+            }
+        )
+    )  # fmt: skip
+    assert running.result().residual == pytest.approx((pull - static * press) / press, rel=1e-9)
+    for _ in range(20):
+        running.step()
+    assert running.status is Status.CONVERGED
+    assert running.state.x[0, 0] > (pull - static * press) / stiffness
+    # x'' + 21 x' + 20 x = pull - mu_k N creeps to where the pull is mu_k N: after 20 s exp(-20) of the way is left
+    solver("verlet").advance(running.system, running.state, 2000, 0.0)
+    assert running.state.x[0, 0] == pytest.approx((pull - kinetic * press) / stiffness, rel=2.0 * math.exp(-20.0))
+    assert np.abs(running.state.v).max() <= 2.0 * math.exp(-20.0) * (pull - kinetic * press) / stiffness
+
+
+@pytest.mark.parametrize("push", [0.35, 0.45])
+def test_friction_that_slows_more_than_it_holds_does_not_push_back(push: float) -> None:
+    """mu_s 0.3 < mu_k 0.5: a push between both does not overcome mu_k, and never moves a particle against itself."""
+    system = compile(
+        Scene.read(
+            {
+                "particles": [[0, 0, 0.0]], "forces": [{"kind": "unary", "particles": [0], "vector": [push, 0, -1.0]}],
+                "settings": {"time_step": 0.01, "floor": {"static_friction": 0.3, "kinetic_friction": 0.5}},
+            }
+        )
+    )  # fmt: skip
+    state = system.start()
+    solver("verlet").advance(system, state, 100, 0.0)
+    assert (state.x == 0.0).all() and (state.v == 0.0).all()
+
+
 def test_a_hanging_heavy_chain_swings_at_laguerre_frequencies() -> None:
     """n = 10 masses: omega^2 = (g/a) x zeros of L_n: 1.173855, 2.700842, 4.252462 times sqrt(g/L), from the tangent.
 

@@ -107,6 +107,7 @@ def floor_support(x, v, f, carried, free, mass, dt, parameters):  # type: ignore
             press /= reach
             slip = 0.0
             shear = 0.0
+            going = 0.0  # momentum at the end of the step if nothing slowed it down
             for c in range(3):
                 n = parameters[p, 3 + c]
                 along = (v[i, c] - speed * n) * free[i, c]
@@ -115,17 +116,28 @@ def floor_support(x, v, f, carried, free, mass, dt, parameters):  # type: ignore
                 carried[i, c] += press * n
                 v[i, c] -= speed * n * free[i, c] / reach
                 shear += f[i, c] * f[i, c] * free[i, c]
+                ahead = (mass[i] * v[i, c] + dt * f[i, c]) * free[i, c]
+                going += ahead * ahead
             slip = np.sqrt(slip)
             shear = np.sqrt(shear)
+            going = np.sqrt(going)
             held = parameters[p, 7] * press
             slows = parameters[p, 8] * press
-            if dt > 0.0 and slip * mass[i] > (slows + shear) * dt:
+            holds = np.maximum(held, slows) if dt > 0.0 else held  # what cannot slide on stays
+            moves = dt > 0.0 and slip > 0.0
+            if moves and slip * mass[i] > (slows + shear) * dt:
                 for c in range(3):
                     n = parameters[p, 3 + c]
                     brake = -slows * v[i, c] * free[i, c] / slip
                     f[i, c] += brake
                     carried[i, c] += brake
-            elif shear <= held:
+            elif moves and going > slows * dt:
+                # static friction holds only what has stopped: damping may hide a shear that it could not hold at rest
+                for c in range(3):
+                    brake = -slows * (mass[i] * v[i, c] + dt * f[i, c]) * free[i, c] / going
+                    f[i, c] += brake
+                    carried[i, c] += brake
+            elif shear <= holds:
                 for c in range(3):
                     carried[i, c] -= f[i, c] * free[i, c]
                     f[i, c] -= f[i, c] * free[i, c]
