@@ -60,7 +60,7 @@ def saddles(x):
 def with_lines(result, scene, start):
     """For the picture: the membrane with its beams and arcs as lines, not with the arrows of their pulls."""
     springs = [force for force in result.forces if force["kind"] == "springs"]
-    none = {**result.reactions, "particles": [], "force": np.zeros((0, 3)), "names": []}
+    none = {name: rows[:0] for name, rows in result.reactions.items()}
     drawn = [force.curve for force in scene.forces if force.kind == "pull_to_curve"]
     lines = [{"kind": "polyline", "points": points} for points in (*drawn, start[0], start[-1])]
     return replace(result, forces=springs, reactions=none, geometry=[*result.geometry, *lines])

@@ -84,7 +84,7 @@ def drawn(result: Result, packed: list[Packing], module: ModuleType, given: dict
         result,
         geometry=[{"name": "", "kind": "polyline", "points": points} for points in rounds],
         forces=[{"name": "contacts", "kind": "springs", "particles": pairs, "force": -pushes}],
-        reactions={"particles": np.zeros(0, int), "force": np.zeros((0, 3)), "names": []},
+        reactions={name: rows[:0] for name, rows in result.reactions.items()},
     )
 
 

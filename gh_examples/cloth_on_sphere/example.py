@@ -52,7 +52,7 @@ def drawn(result: Result, radius: float) -> Result:
     out = radius * np.cos(rise)
     ball = quads(np.stack([out * np.cos(turn), out * np.sin(turn), radius * np.sin(rise)], axis=-1))
     shown = {"name": "ball", "kind": "mesh", "vertices": ball.vertices, "faces": ball.faces}
-    none = {"particles": np.zeros(0, int), "force": np.zeros((0, 3)), "names": []}
+    none = {name: rows[:0] for name, rows in result.reactions.items()}
     return replace(result, geometry=[*result.geometry, shown], forces=[result.force("threads")], reactions=none)
 
 
