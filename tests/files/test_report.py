@@ -144,7 +144,7 @@ def test_a_report_of_beams_has_the_moments_of_loads_and_supports() -> None:
 
 
 def test_a_report_has_what_floors_carry() -> None:
-    """Reactions and forces of floors balance the loads: a cable of 10 x 0.15 = 1.5 N lifts at 4 N that stand on a floor,
+    """Reactions and forces of floors balance the loads: a spring of 10 x 0.15 = 1.5 N lifts at 4 N on a floor,
     which carries 2.5 N; a result at a prompt has both lines."""
     scene = Scene.read({
         "particles": [[0, 0, 0], [0, 0, 2]],
