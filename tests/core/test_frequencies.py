@@ -11,6 +11,7 @@ import hookean
 from hookean import Scene, Simulation
 
 from .bar_scenes import chain, string
+from .beam_scenes import SLENDER
 
 
 def test_a_prestressed_string_has_its_frequencies() -> None:
@@ -112,6 +113,32 @@ def test_masses_given_are_those_that_count() -> None:
     scene = Scene.read(string())
     light, heavy = (hookean.frequencies(scene, masses=m).frequencies for m in (2.0, 8.0))
     np.testing.assert_allclose(light, 2.0 * heavy, rtol=1e-12)
+
+
+@pytest.mark.parametrize("hinged", ["yz", "xyz"])
+def test_a_truss_of_hinged_beams_has_the_frequencies_of_its_bars(hinged: str) -> None:
+    """All nine, with masses that are not alike: turns of hinged joints, which are left out, neither take the place of
+    one nor change it. To 1e-9: the stiffness of the bars is 1e4 times that of their twist."""
+    x = [[0, 0, 0], [2, 0, 0], [1, 1.7, 0], [0.1, 0.1, 2], [1.9, 0.2, 2.1], [1, 1.5, 1.9]]
+    pairs = [[0, 3], [1, 4], [2, 5], [3, 4], [4, 5], [5, 3], [0, 4], [1, 5], [2, 3]]
+    beams = {"kind": "beam", "particles": pairs, **SLENDER, "release_start": hinged, "release_end": "xyz"}
+    bars = {"kind": "springs", "particles": pairs, "axial_stiffness": SLENDER["E"] * SLENDER["A"]}
+    found, wanted = (
+        hookean.frequencies(Scene.read({"particles": x, "forces": [force], "anchors": [{"particles": [0, 1, 2]}]}),
+                            count=9, masses=[1.0, 1.0, 1.0, 0.7, 1.3, 20.0]).frequencies
+        for force in (beams, bars)
+    )  # fmt: skip
+    np.testing.assert_allclose(found, wanted, rtol=1e-9)
+
+
+def test_a_strut_on_balls_twists_as_its_masses_say() -> None:
+    """Its ends turn against each other, omega^2 = (G J / L) (1 / I + 1 / I'), I = m L^2 / 12; that it turns as a whole
+    moves nothing and changes nothing, though that turn is not even across the unlike masses."""
+    beam = {"kind": "beam", "particles": [[0, 1]], **SLENDER, "release_start": "yz", "release_end": "yz"}
+    scene = {"particles": [[0, 0, 0], [1.2, 1.6, 0]], "forces": [beam], "anchors": [{"particles": [0, 1]}]}
+    found = hookean.frequencies(Scene.read({**scene, "masses": [1.0, 5.0]}))
+    wanted = np.sqrt(SLENDER["G"] * SLENDER["J"] / 2.0 * 12.0 / 2.0**2 * (1.0 + 1.0 / 5.0))
+    np.testing.assert_allclose(found.angular_frequencies, [wanted], rtol=1e-12)
 
 
 def test_a_motion_that_nothing_resists_has_frequency_zero() -> None:

@@ -116,6 +116,25 @@ def test_a_start_that_is_stationary_by_symmetry_is_reported() -> None:
         assert found.status == "stalled" and "a little off it" in found.message, found.message
 
 
+def test_a_maximum_along_a_limit_is_no_answer() -> None:
+    """Force densities a, b of two links carry a load at z = -1 / (a + b), x = 2 b / (a + b). Along the limit z >= -0.4,
+    a + b = 2.5, their load path is 0.4 + 1.6 a b: most at a = b, where a start that is even ends by symmetry. A little
+    off it the search goes on to where one link has its least density, 0.05, at 0.4 + 1.6 x 0.05 x 2.45 or below."""
+    for start, ends in (((1.0, 1.0), "stalled"), ((1.25, 1.25), "stalled"), ((1.2, 1.4), "converged")):
+        links = {"kind": "springs", "name": "s", "particles": [[0, 1], [1, 2]], "stiffness": start, "rest_length": 0.0}
+        scene = {
+            "particles": [[0, 0, 0], [1, 0, -0.2], [2, 0, 0]],
+            "forces": [links, {"kind": "unary", "particles": [1], "vector": [0, 0, -1]}],
+            "anchors": [{"particles": [0, 2]}],
+        }
+        variable = {"force": "s", "field": "stiffness", "lower": 0.05, "upper": 50}
+        limit = {"kind": "position", "particles": [1], "axes": "z", "lower": -0.4}
+        found = design(scene, [variable], [{"kind": "load_path", "force": "s"}], [limit])
+        assert found.status == ends and ("on both sides" in found.message) == (ends == "stalled"), found.message
+        if ends == "converged":
+            assert found.objective < 0.4 + 1.6 * 0.05 * 2.45 + 1e-9
+
+
 def test_what_cannot_be_met_ends_nearest_in_least_squares() -> None:
     """z <= -1 three times and z >= -0.5: the least of 3 (z + 1)^2 + (z + 0.5)^2 is at -0.875."""
     scene = string(rest=0.0, stiffness=10.0)

@@ -141,3 +141,24 @@ def test_a_report_of_beams_has_the_moments_of_loads_and_supports() -> None:
     force, moment = ([float(part) for part in cell.split(",")] for cell in clamp[3:])
     assert force == pytest.approx([0, 0, 2], abs=1e-6) and moment == pytest.approx([0, -5.0, 0], abs=1e-6)
     assert text.count("Reactions together: 0, 0, 4 N.") == 1 and "<h3>Reactions</h3>" in text.split("Case P")[0]
+
+
+def test_a_report_has_what_floors_carry() -> None:
+    """Reactions and forces of floors balance the loads: a spring of 10 x 0.15 = 1.5 N lifts at 4 N on a floor,
+    which carries 2.5 N; a result at a prompt has both lines."""
+    scene = Scene.read({
+        "particles": [[0, 0, 0], [0, 0, 2]],
+        "forces": [
+            {"kind": "springs", "particles": [[0, 1]], "stiffness": 10, "rest_length": 1.85},
+            {"kind": "unary", "particles": [0], "vector": [0, 0, -4]},
+            {"kind": "floor"},
+        ],
+        "anchors": [{"name": "top", "particles": [1]}],
+    })  # fmt: skip
+    text = report(scene, pictures=False)
+    assert "<p>Reactions together: 0, 0, 1.5 N.</p>\n<p>Forces of floors together: 0, 0, 2.5 N.</p>" in text
+    lines = hookean.relax(scene).summary()
+    assert lines[-2:] == [
+        "1 reactions: largest 1.5 N, together (0, 0, 1.5) N",
+        "1 contacts with floors: largest 2.5 N, together (0, 0, 2.5) N",
+    ]

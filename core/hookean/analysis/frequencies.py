@@ -87,8 +87,8 @@ def frequencies(model: Scene | Result | Simulation, count: int = 6, *, masses: A
     mass = _masses(rest, masses)
     unknowns = Unknowns.of(rest.system, rest.state, rest.free)
     tangent = unknowns.tangent(rest.system, rest.state)
-    stiffness, turns = against_turns(tangent, unknowns.dofs, rest.system.slots.count)
     own = mass[unknowns.dofs // 3]
+    stiffness, turns = against_turns(tangent, unknowns.dofs, rest.system.slots.count, own)
     squares, vectors = lowest(stiffness, own, min(count, len(own) - turns))
     vectors = vectors / np.sqrt(own)[:, None]
     angular = np.sign(squares) * np.sqrt(np.abs(squares))
@@ -110,16 +110,17 @@ def frequencies(model: Scene | Result | Simulation, count: int = 6, *, masses: A
 def _masses(rest: AtRest, given: Any) -> Floats:
     if given is None:
         return rest.system.mass
+    slots, count = rest.system.slots, rest.system.slots.count
     try:
-        values = np.asarray(given, dtype=float)
-        mass = np.array(np.broadcast_to(values, rest.system.mass.shape))
+        mass = np.array(np.broadcast_to(np.asarray(given, dtype=float), (count,)))
     except (TypeError, ValueError):
-        count = len(rest.system.mass)
         raise InputError("masses", f"give one mass, or one for each of the {count} particles") from None
     if not (np.isfinite(mass) & (mass > 0.0)).all():
         spot = int(np.argmax(~(np.isfinite(mass) & (mass > 0.0))))
         raise InputError(f"masses/{spot}", f"{mass[spot]:g} given; masses are more than 0 and finite")
-    return mass
+    rows = slots.extended(mass, 1.0)
+    rows[slots.first] = mass[slots.particles]  # a rotation has the mass of its particle
+    return rows
 
 
 def lowest(stiffness: Any, mass: Floats, count: int) -> tuple[Floats, Floats]:

@@ -110,10 +110,13 @@ def factor(matrix: Any) -> Factor | None:
     return Factors(lower.indices.astype(np.int32), lower.indptr.astype(np.int32)).factor(lower.data)
 
 
-def against_turns(matrix: Any, dofs: Ints, first: int) -> tuple[Any, int]:
+def against_turns(matrix: Any, dofs: Ints, first: int, mass: Floats | None = None) -> tuple[Any, int]:
     """A tangent with its largest stiffness against turns of hinged joints that meet none and move nothing, and how many
     these are: the kernel of its part of rotations, of the unknowns from row `first` of the axes `dofs` on. Nothing else
-    changes. Of more than `TURNS` rotations none are looked for."""
+    changes. Of more than `TURNS` rotations none are looked for.
+
+    With the masses of the axes `dofs`, what is added to K is s M V (V' M V)^-1 V' M, V the turns: in K phi = omega^2 M
+    phi they then have omega^2 = s, a bound of all others, and all other modes stay, for they are M-orthogonal to V."""
     import scipy.sparse as sparse
 
     turning = np.flatnonzero(dofs >= 3 * first)
@@ -124,8 +127,26 @@ def against_turns(matrix: Any, dofs: Ints, first: int) -> tuple[Any, int]:
     if not loose.shape[1]:
         return matrix, 0
     row, column = np.repeat(turning, len(turning)), np.tile(turning, len(turning))
-    held = (largest_row(matrix) * (loose @ loose.T)).ravel()
+    held = (_most(matrix, mass) * _across(loose, None if mass is None else mass[turning])).ravel()
     return (matrix + sparse.coo_matrix((held, (row, column)), shape=matrix.shape)).tocsc(), loose.shape[1]
+
+
+def _most(matrix: Any, mass: Floats | None) -> float:
+    """A bound of the eigenvalues of K, or of M^-1/2 K M^-1/2; unknowns after the masses have none."""
+    if mass is None:
+        return largest_row(matrix)
+    import scipy.sparse as sparse
+
+    root = sparse.diags(np.append(1.0 / np.sqrt(mass), np.ones(matrix.shape[0] - len(mass))))
+    return largest_row(root @ matrix @ root)
+
+
+def _across(loose: Floats, mass: Floats | None) -> Floats:
+    """V V', or M V (V' M V)^-1 V' M, of orthonormal columns V."""
+    if mass is None:
+        return np.asarray(loose @ loose.T)
+    heavy = mass[:, None] * loose
+    return np.asarray(heavy @ np.linalg.solve(loose.T @ heavy, heavy.T))
 
 
 def largest_row(matrix: Any) -> float:

@@ -70,7 +70,7 @@ def _here(search: Search) -> Here | None:
         return None
     free, slope = ~gained.held, gained.left.sum(axis=0)
     rows = np.flatnonzero(gained.shares)
-    values, low, high = _limits(search, found)
+    values, low, high = limits_at(search, found)
     nearer = np.where(np.abs(values - low) < np.abs(values - high), low, high)
     off = (values - nearer)[rows]
     flat = not np.abs(slope).max(initial=0.0) > SLOPE * abs(value)
@@ -84,7 +84,7 @@ def _sizes(search: Search) -> Floats:
     return np.concatenate([np.zeros(0), *(np.full(len(limit[0]), size) for limit, size in parts)])
 
 
-def _limits(search: Search, found: Equilibrium) -> tuple[Floats, Floats, Floats]:
+def limits_at(search: Search, found: Equilibrium) -> tuple[Floats, Floats, Floats]:
     none = [np.zeros(0)]
     values = np.concatenate(none + search.aims.constraint_values(found))
     low, high = (np.concatenate(none + [limit[side] for limit in search.aims.limits]) for side in (0, 1))
@@ -109,7 +109,7 @@ def _merit(search: Search, here: Here, y: Floats) -> float:
     found = search.at(y)
     if not found.converged or search.missed(found) > 0.0:
         return np.inf
-    values, low, high = _limits(search, found)
+    values, low, high = limits_at(search, found)
     price = 2.0 * np.maximum(np.abs(here.gained.shares), np.abs(here.gained.shares).max(initial=0.0) * 1e-3)
     return float(sum(search.aims.objectives(found)) + price @ np.abs(values - np.clip(values, low, high)))
 
@@ -123,7 +123,7 @@ def _newton(search: Search, here: Here) -> list[Floats]:
     if hessian is None:
         return []
     back = np.linalg.lstsq(by, -here.off, rcond=1e-10)[0] if len(by) else np.zeros(count)
-    across = _null(by)
+    across = null(by)
     slope = across.T @ (here.slope[free] + hessian @ back)
     curvature, turned = np.linalg.eigh(across.T @ hessian @ across)
     largest, steps = float(np.abs(curvature).max(initial=0.0)), []
@@ -144,14 +144,14 @@ def _newton(search: Search, here: Here) -> list[Floats]:
 
 def _length(search: Search, here: Here, changes: Floats) -> float:
     """The part of a step, at most 1, after which the first limit holds that does not yet (equation 16.41 there)."""
-    values, low, high = _limits(search, here.found)
+    values, low, high = limits_at(search, here.found)
     room = np.where(changes > 0.0, high - values, low - values)
     room[here.rows] = np.inf * np.sign(changes[here.rows])  # these are held by the step itself
     ways = (changes != 0.0) & (np.sign(room) == np.sign(changes))
     return float(min(1.0, (room[ways] / changes[ways]).min(initial=1.0)))
 
 
-def _null(by: Floats) -> Floats:
+def null(by: Floats) -> Floats:
     """Directions (n, m) in which none of the rows (k, n) changes."""
     if not len(by):
         return np.eye(by.shape[1])

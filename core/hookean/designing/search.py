@@ -24,7 +24,7 @@ from hookean.designing.methods import METHODS, Stopped, Unbounded
 from hookean.designing.polish import polish
 from hookean.designing.problem import Problem
 from hookean.designing.quantities.base import Quantity
-from hookean.designing.second_look import SYMMETRIC, UNMOVED, stationary, unmoved
+from hookean.designing.second_look import SADDLE, SYMMETRIC, UNMOVED, saddle, stationary, unmoved
 from hookean.designing.sensitivity import gradients, jacobian
 from hookean.designing.summary import answer
 from hookean.designing.unknowns import Unknowns
@@ -269,6 +269,8 @@ def design(
                 ended, said = DesignStatus.CONVERGED, ""
             if ended is DesignStatus.CONVERGED and stationary(search):
                 ended, said = DesignStatus.STALLED, SYMMETRIC
+            if ended is DesignStatus.CONVERGED and saddle(search):
+                ended, said = DesignStatus.STALLED, SADDLE
             if ended is DesignStatus.INFEASIBLE and unmoved(search):
                 ended, said = DesignStatus.STALLED, UNMOVED
         except Stopped:

@@ -3,12 +3,14 @@ the start only seemed best because derivatives vanish there by symmetry."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean.designing.gains import constraint_slopes, gains
 from hookean.designing.limits import LIMIT, beyond
+from hookean.designing.polish import limits_at, null
 from hookean.designing.sensitivity import jacobian
 from hookean.errors import InputError
 from hookean.forces.base import lengths
@@ -27,10 +29,15 @@ BESIDE = 1e-2  # of unknowns' sizes, the step of a second look; the objective ch
 FLAT = 1e-9  # part of the objective: slopes below are 0
 BETTER = 1e-8  # part of the objective: a fall that is not rounding
 SEED = 11
+BACK = 4  # steps back to the limits, each by 1e-2 of what is left
 
 SYMMETRIC = (
     "The start is stationary by symmetry: no variable changes the objective there at first, but values beside it are"
     " better. Start from values that are a little off it."
+)
+SADDLE = (
+    "The values are stationary by symmetry: along the limits that hold no variable changes the objective at first, but"
+    " values on both sides are better. Start from values that are a little off it."
 )
 UNMOVED = (
     "No variable changes at first what misses its limits at the start, but values beside it are nearer. Start from"
@@ -72,6 +79,44 @@ def stationary(search: Search) -> bool:
     )
     search.best = (missed, value, best)
     return found
+
+
+def saddle(search: Search) -> bool:
+    """Whether values on both sides of the best are better, along the limits that hold: it is stationary, and no
+    minimum. One direction is tried; beside a minimum no value on both sides is better."""
+    missed, value, best = search.best
+    found = search.at_best()
+    gained = gains(search, found, best) if missed == 0.0 and found.converged and search.problem.constraints else None
+    if gained is None or not (rows := np.flatnonzero(gained.shares)).size:
+        return False
+    free = ~gained.held
+    by = constraint_slopes(search, found)[rows][:, free]
+    across = null(by)
+    if not across.shape[1]:
+        return False
+    aside = across @ np.random.default_rng(SEED).normal(size=across.shape[1])
+    held = np.concatenate([column[None, rows] for column in limits_at(search, found)[1:]])
+    values = limits_at(search, found)[0][rows]
+    goal = np.where(np.abs(values - held[0]) < np.abs(values - held[1]), *held)
+    size = max(abs(value), np.finfo(float).tiny)
+    step = np.zeros(len(best))
+    step[free] = BESIDE * aside / np.abs(aside).max()
+    sides = [_along(search, best + way * step, free, by, rows, goal) for way in (1.0, -1.0)]
+    search.best = (missed, value, best)
+    return max(sides) < value - BETTER * size
+
+
+def _along(search: Search, y: Floats, free: Any, by: Floats, rows: Any, goal: Floats) -> float:
+    """The objective beside `y`, back at the limits that hold; infinite where the way does not lead there."""
+    y = y.copy()
+    for _ in range(BACK):
+        found = search.at(np.clip(y, *search.bounds))
+        if not found.converged:
+            return np.inf
+        y[free] += np.linalg.lstsq(by, goal - limits_at(search, found)[0][rows], rcond=1e-10)[0]
+    y = np.clip(y, *search.bounds)
+    found = search.at(y)
+    return search.objective(y) if found.converged and search.missed(found) == 0.0 else np.inf
 
 
 def unmoved(search: Search) -> bool:

@@ -149,23 +149,26 @@ def _loads(result: Result, title: str) -> Iterator[str]:
 
 
 def _carried(result: Result) -> Iterator[str]:
-    """What each support carries, the largest first."""
+    """What each support carries, the largest first, and what floors carry together."""
     found, units = result.reactions, result.units
-    force = _sizeable(found["force"])
+    force, floor = _sizeable(found["force"]), _sizeable(result.contacts["force"])
+    if len(force) or len(floor):
+        yield "<h3>Reactions</h3>"
+    for title, rows in (("Reactions", force), ("Forces of floors", floor)):
+        if len(rows):
+            yield f"<p>{title} together: {_vector(_sizeable(rows.sum(axis=0))[0])} {units.force}.</p>"
     if not len(force):
         return
-    yield "<h3>Reactions</h3>"
-    yield f"<p>Reactions together: {_vector(_sizeable(force.sum(axis=0))[0])} {units.force}.</p>"
     heads = ["support", "particle", f"x, y, z [{units.length}]", f"reaction x, y, z [{units.force}]"]
     columns = [force]
     if len(result.rotations["particles"]):
         heads.append(f"moment x, y, z [{units.of('force length')}]")
         columns.append(_sizeable(found["moment"]))
-    rows = []
+    cells = []
     for i in np.argsort(-np.linalg.norm(force, axis=1), kind="stable")[:MOST].tolist():
         at = int(found["particles"][i])
-        rows.append((found["names"][i], at, _vector(result.particles[at]), *(_vector(column[i]) for column in columns)))
-    yield _table(heads, rows)
+        cells.append((found["names"][i], at, _vector(result.particles[at]), *(_vector(part[i]) for part in columns)))
+    yield _table(heads, cells)
     if len(force) > MOST:
         yield f"<p>The {MOST} largest of {len(force)} are shown.</p>"
 

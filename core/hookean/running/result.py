@@ -111,13 +111,11 @@ class Result:
             line += f", moments up to {max(ends):.4g} {self.units.of('moment')}" if ends else ""
             used = f", utilisation up to {100.0 * np.max(entry[NAME]):.4g} %" if np.size(entry.get(NAME, ())) else ""
             lines.append(line + used)
-        reactions = np.asarray(self.reactions["force"]).reshape(-1, 3)
-        if len(reactions):
-            largest = np.linalg.norm(reactions, axis=1).max()
-            together = reactions.sum(axis=0)
-            total = ", ".join(f"{c:.4g}" for c in np.where(np.abs(together) > 1e-9 * largest, together, 0.0))
-            unit = self.units.force
-            lines.append(f"{len(reactions)} reactions: largest {largest:.4g} {unit}, together ({total}) {unit}")
+        for title, found in (("reactions", self.reactions), ("contacts with floors", self.contacts)):
+            if len(rows := np.asarray(found["force"]).reshape(-1, 3)):
+                largest, together, unit = np.linalg.norm(rows, axis=1).max(), rows.sum(axis=0), self.units.force
+                total = ", ".join(f"{c:.4g}" for c in np.where(np.abs(together) > 1e-9 * largest, together, 0.0))
+                lines.append(f"{len(rows)} {title}: largest {largest:.4g} {unit}, together ({total}) {unit}")
         return lines
 
     def _range(self, entry: dict[str, Any], column: str) -> str:
