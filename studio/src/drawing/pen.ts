@@ -33,9 +33,14 @@ export class Pen {
   private queue: Promise<void> = Promise.resolve();
 
   constructor(private readonly session: Session) {
-    // Undo takes corners back with their particles; the line goes on from the one before
+    // Undo takes corners back with their particles; the line goes on from the one before. A topology that comes after
+    // the answer to a later edit has fewer particles than corners, too, but no fewer than the one before
+    let earlier = 0;
     effect(() => {
       const count = session.topology.value?.particles ?? 0;
+      const fewer = count < earlier;
+      earlier = count;
+      if (!fewer) return;
       const left = this.corners.peek().filter(({ particle }) => particle < count);
       if (left.length < this.corners.peek().length) this.corners.value = left;
     });
