@@ -22,8 +22,8 @@ def sampled(values: Iterable[Any], every: int) -> list[Any]:
 
 def examples(count: int) -> int:
     """How many examples hypothesis draws: `count` in `make soak`, in `make mutants` a third of them, at least 10,
-    elsewhere a fifth, at least 8."""
-    least, part = (10, 3) if MUTANTS else (8, 5)
+    elsewhere an eighth, at least 8."""
+    least, part = (10, 3) if MUTANTS else (8, 8)
     return count if SOAK else max(least, count // part)
 
 

@@ -80,6 +80,7 @@ def test_the_table_has_the_sizes_it_promises(parts: dict[str, ModuleType]) -> No
     assert cases(["tent"], [1_000]) == [("tent", 1_000)]
 
 
+@pytest.mark.soak
 def test_hookean_and_c_step_and_a_shell_falls(parts: dict[str, ModuleType]) -> None:
     """Rates are positive; the net of C moves, and no number is lost; the sphere is closed: V - E + F = 2."""
     stepping, problems = parts["stepping"], parts["problems"]

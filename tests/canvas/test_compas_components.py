@@ -81,6 +81,7 @@ def by_the_engine() -> dict[str, Any]:
     return relax(Scene.read(scene)).to_dict()
 
 
+@pytest.mark.soak
 def test_the_form_and_its_forces_are_the_engines(told: dict[str, Any]) -> None:
     wanted = by_the_engine()
     assert (told["status"], told["troubles"], told["classes"]) == ("converged", [], ["Mesh", "Graph"])

@@ -191,6 +191,7 @@ def test_reactions_carry_the_load() -> None:
     assert found.gradient[2] == pytest.approx([0.0], abs=1e-6)
 
 
+@pytest.mark.soak
 def test_the_height_of_a_cap_by_its_pressure() -> None:
     """A bubble of radius R = 2 T / p over a rim of radius 1 has volume pi h (3 + h²) / 6 with h = R - sqrt(R² - 1);
     dV/dp of the closed form. The film of 32 x 12 triangles has the error of its mesh, of order 2: 3 %."""

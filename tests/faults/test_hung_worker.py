@@ -52,6 +52,7 @@ def _answered(served: Served, key: str, action: str, **options: Any) -> list[htt
     return found
 
 
+@pytest.mark.soak
 def test_pause_reaches_a_session_whose_process_hangs(running: Served) -> None:
     """It is ended and comes back, paused, where its checkpoint was, with its edits, and goes on as any other."""
     process = _begun(running, "a")
@@ -120,6 +121,7 @@ def test_a_client_that_leaves_ends_a_worker_that_hangs(running: Served) -> None:
     assert running.client.post("/v1/relax", json=CABLE).json()["status"] == "converged"
 
 
+@pytest.mark.soak
 def test_the_service_ends_with_workers_that_hang() -> None:
     served = Served(workers=1).ready()
     processes = [_begun(served, "a"), *served.workers()]

@@ -88,6 +88,7 @@ def jobs(served: Served) -> Iterator[httpx.Client]:
     end_all(served.client)
 
 
+@pytest.mark.soak
 def test_rows_are_byte_for_byte_those_of_the_pool(jobs: httpx.Client) -> None:
     request = sweep(100, 100) if SOAK else sweep(20, 10)
     address = post(jobs, request)

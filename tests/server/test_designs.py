@@ -78,6 +78,7 @@ def test_one_key_is_one_job(jobs: httpx.Client) -> None:
     assert second.headers["idempotency-replayed"] == "true"
 
 
+@pytest.mark.soak
 def test_progress_streams_and_cancelling_keeps_the_best(runner: Served, jobs: httpx.Client) -> None:
     """What a checkpoint has is never lost, not even with the worker; a search goes on from the last one."""
     address = jobs.post("/v1/design", json=endless()).headers["location"]

@@ -92,6 +92,7 @@ def test_the_search_finds_a_page(reader: Any, pages: list[str]) -> None:
     shown.page.wait_for_url(re.compile("/docs/how-to/soap-film/"))
 
 
+@pytest.mark.soak
 def test_the_reference_lists_every_operation_and_tries_one(reader: Any, service: Service, pages: list[str]) -> None:
     """In the colours chosen on the other pages; with the token a request to this service is answered."""
     shown = reader(color_scheme="light")

@@ -84,6 +84,7 @@ def test_stl_glb_and_svg_have_the_form_that_is_seen(membrane: Studio):
     assert (x1 - x2, y1 - y2) == pytest.approx(np.subtract(one, other), abs=0.02)
 
 
+@pytest.mark.soak
 def test_the_rhino_file_has_the_shape_that_is_seen(membrane: Studio):
     """Read by rhino3dm: a mesh whose vertices are the particles, with its unit."""
     model = rhino3dm.File3dm.Read(str(taken(membrane, "Rhino .3dm", ".3dm")))
@@ -150,6 +151,7 @@ def test_the_picture_is_what_is_seen(membrane: Studio):
         assert differs[max(0, row - 6) : row + 7, max(0, column - 6) : column + 7].any()
 
 
+@pytest.mark.soak
 def test_the_link_shows_the_same_scene(membrane: Studio, open_studio: Opened):
     """Copied, and opened in another window of the same browser."""
     membrane.page.context.grant_permissions(["clipboard-read", "clipboard-write"])

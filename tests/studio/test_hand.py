@@ -74,6 +74,7 @@ def test_what_is_drawn_can_be_taken_at_any_moment(cable: Studio):
     assert cable.page.evaluate("() => (clearTimeout(window.watching), window.missing)") == 0
 
 
+@pytest.mark.soak
 def test_pause_step_undo_redo_and_reset(cable: Studio):
     """Each does in the service what its name says, and the page shows it."""
     key, service = cable.key, cable.service

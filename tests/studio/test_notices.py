@@ -126,6 +126,7 @@ def test_to_rest_is_what_relax_finds(open_studio: Opened) -> None:
     studio.rests_at(wanted.particles)
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("form", sampled([("Scene", ".json"), ("Rhino .3dm", ".3dm"), ("npz", ".npz")], 3))
 def test_what_was_saved_opens_as_the_same_model(open_studio: Opened, form: tuple[str, str], tmp_path: Path) -> None:
     button, ending = form

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from .browser import Studio, net
 
@@ -22,6 +23,7 @@ def test_a_step_that_is_too_long_is_repaired_by_a_button(tab: Studio):
     tab.until(lambda: tab.service.scene("repair-step")["settings"]["time_step"] == 1.0)
 
 
+@pytest.mark.soak
 def test_where_nothing_is_held_the_page_says_so_and_holds_the_rim(tab: Studio):
     """The rim of 4 x 4 vertices has 12 of them; the sentence goes with them."""
     tab.service.put("repair-rim", {**net(4), "anchors": []})

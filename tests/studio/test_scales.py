@@ -115,6 +115,7 @@ def test_a_picked_spring_has_a_dark_and_a_light_line_on_every_colour(open_studio
         assert (light.max() + 0.05) / (light.min() + 0.05) > 7
 
 
+@pytest.mark.soak
 def test_guides_are_drawn_where_they_are(tab: Studio) -> None:
     """A closed curve, a mesh and a plane that forces pull to: pixels of their colour, none without the layer."""
     scene = net(4)
@@ -141,6 +142,7 @@ def guide_pixels(studio: Studio) -> int:
     return int(((pixels[..., 0] - pixels[..., 2] > 50) & (pixels[..., 1] > pixels[..., 2])).sum())
 
 
+@pytest.mark.soak
 def test_a_form_of_one_force_reads_equal_on_a_symmetric_scale(tab: Studio) -> None:
     """A flat field has no scale, whatever kind was chosen."""
     tab.service.put("even-flat", family("grid", across=2, along=2, load=0).model_dump(mode="json"))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pytest
 
 from .browser import PHONE, Studio, net
 from .conftest import Opened
@@ -29,6 +30,7 @@ def shown(studio: Studio, key: str, scene: dict[str, Any]) -> Studio:
     return studio
 
 
+@pytest.mark.soak
 def test_a_flat_field_reads_equal(tab: Studio):
     """No spring of a net at its start is stretched: the legend has one number, not a scale."""
     shown(tab, "seen-flat", net(SIDE))

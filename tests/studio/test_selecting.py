@@ -47,6 +47,7 @@ def held(studio: Studio) -> list[int]:
     return sorted(p for anchor in studio.service.anchors(studio.key) for p in anchor["particles"])
 
 
+@pytest.mark.soak
 def test_a_part_is_selected_by_name_numbered_and_measured(sheet: Studio) -> None:
     """The anchor is the corners 0, 4, 20, 24 of a square of 4 m; from corner to corner it is 4 m, 8 m in total, with a
     right angle between; numbers and lengths are drawn where the particles are."""

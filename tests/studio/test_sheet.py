@@ -133,6 +133,7 @@ def test_choices_are_undone_by_button_and_by_key(studio: Studio, roof: Path) -> 
     studio.until(lambda: becomes(studio)[1] == "16 springs")
 
 
+@pytest.mark.soak
 def test_one_object_has_a_role_of_its_own(studio: Studio, roof: Path) -> None:
     page = studio.page
     tasks.chosen(studio, roof)

@@ -57,6 +57,7 @@ def test_the_page_shows_what_python_shows_and_reports_picks_and_edits(tab: Studi
     assert len(shown.scene.anchors) == 2
 
 
+@pytest.mark.soak
 def test_values_colour_the_springs_with_a_legend(tab: Studio, shown: hookean.View):
     """One number for each spring, or for each particle: the ends of the legend are the smallest and the largest number
     of a spring, the mean of its ends."""

@@ -141,6 +141,7 @@ def test_what_is_done_before_the_service_greets_again_is_done(tab: Studio):
     tab.until(lambda: service.summary("greeted")["status"] == "converged")
 
 
+@pytest.mark.soak
 def test_a_frame_that_cannot_be_read_is_told_of(tab: Studio):
     """Also while a drag is under way, whose edits are told the same: the page shows nothing that it has not read."""
     service, page = tab.service, tab.page
