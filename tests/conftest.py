@@ -32,7 +32,6 @@ STUDIO = sorted(path.name for path in (Path(__file__).parent / "studio").glob("t
 PARTS = 4  # of them: as many as there are workers
 BEHIND = 5
 """The niceness of workers that have no test of the studio."""
-MANY = 8  # cases of a test
 APART = ("laws/test_laws.py", "laws/test_determinism.py", "core/test_equilibrium.py")
 """Long files whose functions share nothing that takes long to make: several workers can have a part of one."""
 
@@ -81,7 +80,7 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Leave what takes long to `make soak`; share the others out with `order`."""
     left = [] if SOAK else [item for item in items if item.get_closest_marker("soak")]
-    left += [] if SOAK else more_of_the_same(items)
+    left += [] if SOAK else more_of_the_slow(items)
     if left:
         config.hook.pytest_deselected(items=left)
         gone = {id(item) for item in left}
@@ -89,19 +88,13 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     order(items)
 
 
-def more_of_the_same(items: list[pytest.Item]) -> list[pytest.Item]:
-    """Of the cases of each slow test all but the first of every three; where there are `MANY`, all but the first of
-    every two, unless they are laws, which walk all forces."""
+def more_of_the_slow(items: list[pytest.Item]) -> list[pytest.Item]:
+    """Of the cases of each slow test all but the first of every three."""
     cases: dict[str, list[pytest.Item]] = {}
     for item in items:
-        if not item.get_closest_marker("soak"):
+        if item.get_closest_marker("slow") and not item.get_closest_marker("soak"):
             cases.setdefault(item.nodeid.partition("[")[0], []).append(item)
-    left = []
-    for same in cases.values():
-        many = len(same) >= MANY and same[0].path.parent.name != "laws"
-        every = 3 if same[0].get_closest_marker("slow") else 2 if many else 1
-        left += [item for place, item in enumerate(same) if place % every]
-    return left
+    return [item for same in cases.values() for place, item in enumerate(same) if place % 3]
 
 
 def pytest_collection_finish() -> None:
