@@ -48,6 +48,7 @@ def trussed(x: Floats, pairs: Floats, supports: Floats) -> Scene:
     return Scene.read({"particles": x, "forces": [springs, load], "anchors": anchors, "settings": settings})
 
 
+@pytest.mark.slow
 @seeds(4, soak=100)
 def test_random_trusses_of_von_mises_snap_where_they_are_singular(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Three to five bars from a ring to an apex that is not in its middle. The tangent changes in proportion to the
@@ -65,6 +66,7 @@ def test_random_trusses_of_von_mises_snap_where_they_are_singular(seed: int, mon
     assert parts.max() <= 1e-6
 
 
+@pytest.mark.slow
 @seeds(1, soak=20)
 def test_random_star_domes_have_singular_critical_points(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Their paths lie close to one another: a step that leaves one for another finds no critical point between its

@@ -51,6 +51,7 @@ def cylinder() -> tuple[np.ndarray, np.ndarray]:
     return np.column_stack([np.cos(turn), np.sin(turn), mesh.vertices[:, 1]]), mesh.faces
 
 
+@pytest.mark.slow
 def test_a_rolled_sheet_stays_and_comes_back() -> None:
     """Rectangles have 4 x 90 degrees: no force, to rounding. A disturbed one comes to 2 pi at all inner vertices, with
     its quads made flat."""

@@ -108,6 +108,7 @@ def test_beams_and_what_stands_beside_them_buckle_together() -> None:
     assert found == pytest.approx(root**2, rel=1e-3)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["gable", "portal with a push"])
 def test_frames_of_springs_that_bend_at_corners_buckle_as_frames(name: str) -> None:
     """On hinged feet, as bar chains (Hencky), which lead to the frame with the square of their bars: of 16 to a member

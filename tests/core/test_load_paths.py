@@ -12,6 +12,7 @@ from hookean import Scene
 from .bar_scenes import Spec, truss
 
 
+@pytest.mark.slow
 def test_a_shallow_truss_snaps_through_along_its_closed_form() -> None:
     """P = 2 k z (L0 / l - 1) at height z, with both limit points where l^3 = L0 b^2 (von Mises 1923)."""
     half, rise, k = 1.0, 0.3, 100.0

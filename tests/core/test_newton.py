@@ -75,6 +75,7 @@ def test_newton_finds_the_stable_shape_that_relaxation_finds(kind: str, seed: in
     assert found.iterations < 200
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", SEEDS)
 def test_wrinkles_are_stable_ones(seed: int) -> None:
     """A sheet with more length than its frame has many shapes; the one found has no direction to fall in."""

@@ -262,6 +262,7 @@ def test_equilibria_are_stable(name: str) -> None:
     assert tangent_at(compile(Scene.read(SCENES[name]())), found.particles) >= -1e-7
 
 
+@pytest.mark.slow
 def test_newton_leaves_a_saddle() -> None:
     """The braced frame free to buckle sideways but drawn flat: kept, it is unstable; left, the energy is lower, the
     tangent by differences positive, and few steps were taken."""
