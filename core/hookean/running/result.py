@@ -356,17 +356,18 @@ def _reactions(system: System, state: State, found: Balance, forces: list[dict[s
         for force, entry in zip(system.scene.forces, forces, strict=True)
         if force.bearing and "particles" in entry
     ]
-    rows = np.unique(np.concatenate([held, *(particles for particles, _ in elastic)]))
+    rows = np.unique(np.concatenate([held, *(particles for particles, _ in elastic)])) if elastic else held
     names = dict.fromkeys(rows.tolist(), "")
     for particles, entry in elastic:
         names.update(dict.fromkeys(particles.tolist(), entry["name"]))
     # what holds axes names a reaction before what holds rotations alone; else the last one
     for anchor in sorted(system.held, key=lambda anchor: not anchor.free.all()):
         names.update(dict.fromkeys(anchor.particles.tolist(), anchor.name))
-    exact = np.isin(rows, held)
-    force = np.where(exact[:, None], found.reactions[rows], 0.0)
-    moment = system.slots.moments(found.reactions, rows)
-    moment[~exact[: len(moment)]] = 0.0
+    exact = np.isin(rows, held) if elastic else np.ones(len(held), dtype=bool)
+    force, moment = found.reactions[rows], system.slots.moments(found.reactions, rows)
+    if elastic:
+        force[~exact] = 0.0
+        moment[~exact[: len(moment)]] = 0.0
     for particles, entry in elastic:
         at = np.searchsorted(rows, particles)
         np.add.at(force, at, entry["force"])
