@@ -509,7 +509,7 @@ def test_a_classic_component_that_is_a_cluster_of_others_is_translated_by_its_na
 
 
 def test_encoded_scripts_are_found_wherever_the_name_starts() -> None:
-    from hookean_canvas.kangaroo.coded import _ENCODED
+    from hookean_canvas.kangaroo.solver_scripts import _ENCODED
 
     for before in ("", "x", "xx", "xxx"):
         text = base64.b64encode(f"{before}KangarooSolver # more".encode()).decode()

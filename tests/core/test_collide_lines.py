@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from core.test_collide import evaluated
-from hookean import Scene, relax
+from hookean import InputError, Scene, relax
 from hookean.forces import CollideLines, neighbours
 from hookean.system.system import compile
 from laws import laws
@@ -201,3 +201,10 @@ def test_example_obeys_the_law_of_the_bound_where_it_is_pressed_hard() -> None:
     case = case_of("pressed", force.replaced(radius=[1.0, 1.1, 0.9, 0.8, 0.9]), x)
     for seed in range(10):
         laws.lumped_stiffness_bounds_the_tangent(case, np.random.default_rng(seed), 0.1)
+
+
+def test_contacts_alone_create_no_particles() -> None:
+    """As loads do, they act on what is there; `lines` of theirs must meet it."""
+    alone = Scene.read({"forces": [{"kind": "collide_lines", "lines": [[[0, 0, 0], [1, 0, 0]]]}]})
+    with pytest.raises(InputError, match="loads and contacts alone create none; give particles, or springs"):
+        relax(alone)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hookean.designing import even
+from hookean.designing import even_films
 from hookean.designing.search import design
 from hookean.designing.sensitivity import sensitivity
 
@@ -102,7 +102,7 @@ def test_a_search_through_a_coarse_film_ends_where_its_goals_are_met() -> None:
 
 def test_films_of_many_particles_are_differentiated_across(monkeypatch: pytest.MonkeyPatch) -> None:
     """There the error of the mesh is slight, and a warning names it."""
-    monkeypatch.setattr(even, "MOST", 0)
+    monkeypatch.setattr(even_films, "MOST", 0)
     goal = {"kind": "position", "particles": [13], "axes": "x"}
     said = sensitivity(saddle("plain"), goals=[goal], variables=VARIABLES).warnings
     assert len(said) == 1 and "where in a soap film its vertices lie" in said[0]

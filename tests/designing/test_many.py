@@ -9,7 +9,7 @@ import pytest
 from scipy.sparse import bmat, csc_matrix
 
 from hookean import Scene, relax
-from hookean.designing import even
+from hookean.designing import even_films
 from hookean.designing.equilibrium import Equilibrium, settle
 from hookean.designing.factors import Orders
 from hookean.designing.linearised import _solved
@@ -209,7 +209,7 @@ def mesh(m: int, force: dict[str, Any]) -> dict[str, Any]:
 def test_one_gradient_by_the_pattern_of_the_forward_solve(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Gradients by the sparsity pattern of the Newton steps equal those by a new pattern, to 1e-10: rounding leaves
     1e-16 times the condition number of the tangent, about 1e4. A film as one of many particles."""
-    monkeypatch.setattr(even, "MOST", 0)
+    monkeypatch.setattr(even_films, "MOST", 0)
     cloth = {"warp_stiffness": 50.0, "prestress": [3.0, 3.0, 0.0]}
     scene = mesh(8, {"kind": kind, **(cloth if kind == "membrane" else {"tension": 2.0})})
     scene["settings"] = {"solver": "newton" if kind == "membrane" else "auto"}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import re
 from pathlib import Path
+from typing import Any
 
 import compas
 import ezdxf
@@ -46,6 +47,15 @@ def result() -> Result:
     found = hookean.relax(scene)
     assert found.converged
     return found
+
+
+def valid_ifc(path: Path) -> Any:
+    """The model in a file, without a fault against its schema."""
+    read = ifcopenshell.open(str(path))
+    log = ifcopenshell.validate.json_logger()
+    ifcopenshell.validate.validate(read, log)
+    assert not log.statements
+    return read
 
 
 def groups(result: Result) -> list[tuple[str, np.ndarray, np.ndarray]]:
@@ -129,10 +139,7 @@ def test_abaqus_has_elements_sets_stress_supports_and_loads(result: Result, tmp_
 def test_ifc_has_a_valid_analysis_model(result: Result, tmp_path: Path) -> None:
     """Valid by ifcopenshell's checker of the schema."""
     result.save(tmp_path / "roof.ifc")
-    read = ifcopenshell.open(tmp_path / "roof.ifc")
-    log = ifcopenshell.validate.json_logger()
-    ifcopenshell.validate.validate(read, log)
-    assert not log.statements
+    read = valid_ifc(tmp_path / "roof.ifc")
     members = read.by_type("IfcStructuralCurveMember")
     wanted = [(name, pair, pull) for name, pairs, f in groups(result) for pair, pull in zip(pairs, f, strict=True)]
     assert len(members) == len(wanted)
@@ -276,10 +283,7 @@ def test_moments_of_loads_and_supports_are_in_every_file(mast: Result, tmp_path:
 def test_beams_in_ifc_are_rigid_with_their_hinges_and_eccentric_ends(mast: Result, tmp_path: Path) -> None:
     """A release lets a beam turn about its own y alone; an offset is an eccentricity of the connection."""
     mast.save(tmp_path / "mast.ifc")
-    read = ifcopenshell.open(str(tmp_path / "mast.ifc"))
-    log = ifcopenshell.validate.json_logger()
-    ifcopenshell.validate.validate(read, log)
-    assert not log.statements
+    read = valid_ifc(tmp_path / "mast.ifc")
     members = read.by_type("IfcStructuralCurveMember")
     assert [member.PredefinedType for member in members] == ["RIGID_JOINED_MEMBER"] * 2
     np.testing.assert_allclose(members[1].Axis.DirectionRatios, [0, 0, 1], atol=1e-12)
@@ -306,10 +310,7 @@ def test_elastic_supports_have_their_stiffness_and_reaction_in_ifc(tmp_path: Pat
     }
     found = hookean.relax(Scene.read(spec))
     found.save(tmp_path / "beam.ifc")
-    read = ifcopenshell.open(str(tmp_path / "beam.ifc"))
-    log = ifcopenshell.validate.json_logger()
-    ifcopenshell.validate.validate(read, log)
-    assert not log.statements
+    read = valid_ifc(tmp_path / "beam.ifc")
     points = read.by_type("IfcStructuralPointConnection")
     conditions = [[axis.wrappedValue for axis in list(point.AppliedCondition)[1:]] for point in points]
     assert conditions == [[10.0, 20.0, 30.0, False, 7.0, False], [True, 5.0, True, True, False, False]]

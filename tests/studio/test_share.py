@@ -28,7 +28,7 @@ def seen(studio: Studio, particle: int) -> np.ndarray:
 
 def test_a_read_only_link_shows_the_same_view_live_and_changes_nothing(tab: Studio, open_studio: Opened):
     """The camera is the same to a pixel in 800, colours, selection and a group of many are the same; frames come while
-    its owner plays; a drag turns the view and keys do nothing; once revoked, the page says so."""
+    its owner plays; a drag turns the view and keys do nothing; once revoked, it reports that."""
     page, service = tab.page, tab.service
     service.put("shared", net(5))
     many = json.dumps({"many": list(range(6000))})  # 29,000 characters

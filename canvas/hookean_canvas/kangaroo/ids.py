@@ -16,7 +16,7 @@ from hookean_canvas import archive
 from hookean_canvas.archive import Chunk
 from hookean_canvas.archive.chunk import CLUSTERS
 from hookean_canvas.archive.guids import CLUSTER, PANEL, SCRIBBLE
-from hookean_canvas.kangaroo.coded import used_by
+from hookean_canvas.kangaroo.solver_scripts import used_by
 
 CLASSIC_LIBRARY = UUID("6bb8ff08-9dd5-cccd-7191-72c85ccf8b6a")
 SECOND_LIBRARY = UUID("c2ea695e-1a09-6f42-266d-113498879f60")

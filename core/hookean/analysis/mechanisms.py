@@ -21,7 +21,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 RANK = 1e-10  # of the largest singular value: what is below counts as zero
-TURNS = 1e-6  # what of a turn is left at right angles to the rigid motions, where it is none of them
+TURNS = 1e-6  # a turn with less than this part at right angles to the rigid motions is a rigid motion
 LARGEST = 4_000  # bars or free axes
 
 

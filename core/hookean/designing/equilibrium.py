@@ -2,7 +2,7 @@
 
 At rest f(x, u) = 0 on the free axes. A change du of the unknowns moves held particles by H du and the others by dx,
 K dx = (df/du - K_fh H) du, with K = -df/dx, the tangent stiffness. Films move across themselves alone, and their
-vertices so that they stay even (see `even`).
+vertices so that they stay even (see `even_films`).
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.designing.cycles import LEFT, Cycles
-from hookean.designing.even import Even, evenness
+from hookean.designing.even_films import Even, evenness
 from hookean.designing.factors import Factored, Orders, Patterned
 from hookean.designing.resting import resting
 from hookean.forces.base import lengths

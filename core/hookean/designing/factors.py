@@ -12,7 +12,7 @@ from hookean.linear.pattern import Pattern
 from hookean.linear.sparse_factors import Factor, Factors
 
 if TYPE_CHECKING:
-    from hookean.designing.even import Even
+    from hookean.designing.even_films import Even
     from hookean.system.state import State
     from hookean.system.system import System
 

@@ -294,7 +294,10 @@ def compile(scene: Scene, *, empty: bool = False) -> System:
         raise InputError("scene", said)
     welded = Welded(scene)
     if not len(welded.x) and not empty:
-        raise InputError("/particles", "the scene has no particles; give particles, or a force with lines or a mesh")
+        said = "the scene has no particles; give particles, or a force with lines or a mesh"
+        if scene.forces:
+            said = "the scene has no particles, and loads and contacts alone create none; give particles, or springs"
+        raise InputError("/particles", said)
     later = case_loads(scene)
     given = [(i, force) for i, force in enumerate(scene.forces) if i not in later]
     if scene.settings.floor is not None:

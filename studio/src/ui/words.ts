@@ -55,7 +55,7 @@ export const plain = (sentence: string) =>
       field ? `${field.replaceAll("_", " ")} of force ${number}` : `force ${number}`,
     )
     .replace(/(^|\. )the ([a-z])/g, (_, before: string, first: string) => `${before}The ${first}`)
-    .replaceAll("time_step", "the time step");
+    .replace(/\b(?:the )?time_step\b/g, "the time step");
 
 const NUMBERED = /\b(particle|spring)(?: (\d+)|s (\d+(?:(?:, and |, | and )\d+(?![\d.]))*))/g;
 

@@ -49,7 +49,7 @@ def _whole(item: Object, divisions: tuple[int, int] | None, damaged: list[str]) 
     """What `_plain` reads of an object; nothing, and a sentence more in `damaged`, where a mesh of it cannot be read or
     a number is not finite."""
     try:
-        with np.errstate(divide="ignore", invalid="ignore"):  # weights of zero are told below
+        with np.errstate(divide="ignore", invalid="ignore"):  # weights of zero are refused below
             found = _plain(item, divisions)
         if not all(np.isfinite(a).all() for a in (found or {}).values() if isinstance(a, np.ndarray)):
             raise InputError("", "a coordinate, weight or knot is not finite; rebuild it in Rhino")
