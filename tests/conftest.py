@@ -29,7 +29,7 @@ COMPUTING = ("docs", "tests", "fuzz", "canvas", "laws", "files")
 """Folders whose tests keep a processor busy; all others follow. In both the longest tests come first, so that no worker
 is left alone with one of them."""
 STUDIO = sorted(path.name for path in (Path(__file__).parent / "studio").glob("test_*.py"))
-PARTS = 4  # of them: as many as there are workers
+PARTS = 2  # of them: each has a browser and a service
 BEHIND = 5
 """The niceness of workers that have no test of the studio."""
 APART = ("laws/test_laws.py", "laws/test_determinism.py", "core/test_equilibrium.py")
@@ -80,7 +80,7 @@ def pytest_runtest_setup(item: pytest.Item) -> None:
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Leave what takes long to `make soak`; share the others out with `order`."""
     left = [] if SOAK else [item for item in items if item.get_closest_marker("soak")]
-    left += [] if SOAK else more_of_the_slow(items)
+    left += [] if SOAK else more_of_the_thinned(items)
     if left:
         config.hook.pytest_deselected(items=left)
         gone = {id(item) for item in left}
@@ -88,13 +88,23 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     order(items)
 
 
-def more_of_the_slow(items: list[pytest.Item]) -> list[pytest.Item]:
-    """Of the cases of each slow test all but the first of every three."""
+def more_of_the_thinned(items: list[pytest.Item]) -> list[pytest.Item]:
+    """Of the cases of each test that is slow or thinned all but one of every three: of a slow test the first; of a
+    thinned one the place depends on its name, so that every force is in some of the tests of all forces."""
     cases: dict[str, list[pytest.Item]] = {}
+    kept: dict[str, int] = {}
     for item in items:
-        if item.get_closest_marker("slow") and not item.get_closest_marker("soak"):
-            cases.setdefault(item.nodeid.partition("[")[0], []).append(item)
-    return [item for same in cases.values() for place, item in enumerate(same) if place % 3]
+        slow, thinned = item.get_closest_marker("slow"), item.get_closest_marker("thinned")
+        if (slow or thinned) and not item.get_closest_marker("soak"):
+            test = item.nodeid.partition("[")[0]
+            cases.setdefault(test, []).append(item)
+            kept[test] = len(test) if thinned else 0
+    return [
+        item
+        for test, same in cases.items()
+        for place, item in enumerate(same)
+        if place % 3 != kept[test] % min(3, len(same))
+    ]
 
 
 def pytest_collection_finish() -> None:

@@ -29,6 +29,7 @@ LONG = {"miura", "sphere", "9.32-ribbon", "planar_quads", "bending_gridshell", "
 """Examples of more than a second."""
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize(
     "example", [pytest.param(e, id=e.name, marks=[pytest.mark.soak] if e.name in LONG else []) for e in ALL]
 )

@@ -31,6 +31,7 @@ def unchanged(chunk: Chunk, plain: bytes) -> bool:
 # -------------------------------------------------------------------------------------------------------- real files
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("package", PACKAGES)
 def test_installed_user_objects_come_back_byte_for_byte(package: str) -> None:
     """Each .ghuser, and the object packed in it: read and written, binary and by way of XML, the same bytes."""

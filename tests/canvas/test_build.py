@@ -87,6 +87,7 @@ def test_each_rhino_gets_the_components_it_can_run(dist):
     assert {"Engine", "Springs", "Unary"} <= found["rhino7"]
 
 
+@pytest.mark.thinned
 @every_bundle
 @pytest.mark.parametrize("flavour", ["rhino8", "rhino7"])
 def test_a_user_object_says_what_its_bundle_says(dist, name, flavour):

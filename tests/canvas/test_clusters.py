@@ -69,6 +69,7 @@ def test_a_cluster_that_cannot_be_opened_is_named_with_its_reason(tmp_path: Path
         check(path)
 
 
+@pytest.mark.soak
 def test_a_cluster_in_itself_without_end_is_refused(tmp_path: Path) -> None:
     """Forty clusters in one another: twenty are opened, the next one is named."""
     document = times(1)

@@ -75,6 +75,7 @@ def sound(form: str) -> bytes:
     return {"xml": archive.to_xml, "packed": archive.to_bytes, "plain": to_plain}[form](root)
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("command", COMMANDS)
 @pytest.mark.parametrize("form", ["xml", "packed", "plain"])
 def test_no_command_fails_on_damaged_files_but_in_sentences(

@@ -54,6 +54,7 @@ def test_definitions_of_the_figures_are_converted_both_ways(tmp_path: Path) -> N
         there_and_back(file, tmp_path)
 
 
+@pytest.mark.soak
 @given(chunks(XML_TEXT))
 def test_any_archive_is_like_its_own_copy_and_its_binary_form(root: Chunk) -> None:
     assert difference(root, copied(root)) is None

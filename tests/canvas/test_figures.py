@@ -52,6 +52,7 @@ def test_every_figure_has_a_definition() -> None:
     assert [figure for figure in FIGURES if not shipped(figure).is_file()] == []
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("figure", sampled(FIGURES, 4))
 def test_a_shipped_definition_is_what_its_module_writes_now(figure: str, tmp_path: Path) -> None:
     spec = importlib.util.spec_from_file_location("build_definitions", HERE / "build_definitions.py")

@@ -135,6 +135,7 @@ def test_objects_stay_where_they_stand_where_there_is_room() -> None:
     assert old.items() <= new.items() and not any("were moved" in note for note in report.notes)
 
 
+@pytest.mark.soak
 @settings(max_examples=200 if SOAK else 10, deadline=None)
 @given(st.lists(st.tuples(st.integers(0, 8), st.integers(0, 8)), min_size=12, max_size=12, unique=True))
 def test_what_becomes_larger_pushes_others_on_and_nothing_comes_to_overlap(cells: list[tuple[int, int]]) -> None:
@@ -405,6 +406,7 @@ def same_objects(before: Chunk, after: Chunk) -> list[str]:
     return [part.label for part in parts(before) if held.get(part.id) != part.chunk]
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize(
     "known", sampled(sorted({*COMPONENTS.values(), *(Known("classic", n) for n in CLASSIC)}, key=str), 4), ids=str
 )

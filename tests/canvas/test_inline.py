@@ -62,6 +62,7 @@ def test_a_script_needs_nothing_installed(flavour, version, tmp_path):
     assert re.fullmatch(r"hookean_client_0_1_0_[0-9a-f]{12}", inline.stamp())
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("name", bundles.names())
 def test_every_shipped_script_compiles_for_rhino_8_and_keeps_its_help(name):
     """With the syntax of Python 3.9, in both flavours, ASCII throughout, with only the first line between them."""

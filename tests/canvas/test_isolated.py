@@ -212,6 +212,7 @@ def place(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return tmp_path_factory.mktemp("alone")
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("version", PYTHONS)
 def test_every_component_works(version: str, place: Path, home: Home) -> None:
     """No errors or warnings, and something in every output."""

@@ -221,6 +221,7 @@ def test_a_blend_goes_on_along_both_tangents() -> None:
     assert BY_NAME["Connect Curves"].run([a, b], 1, True, 1.0)[0].IsClosed
 
 
+@pytest.mark.soak
 def test_a_curve_is_pulled_onto_a_surface() -> None:
     flat = BY_NAME["Plane Surface"].run(made(XY), made(("domain", 0, 4)), made(("domain", 0, 4)))[0]
     pulled = BY_NAME["Pull Curve"].run(made([(1, 1, 3), (3, 1, 5)]), flat)[0]

@@ -264,7 +264,7 @@ def test_altered_definitions_end_every_command_with_a_result_or_a_sentence(sampl
 REAL = [*sorted(HERE.glob("*/definition.gh")), *sorted(SHARED.glob("*.gh"))]
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 @pytest.mark.parametrize("file", REAL if SOAK else REAL[::24], ids=lambda file: file.parent.name)
 def test_altered_real_definitions_end_every_command_but_run(file: Path, tmp_path: Path) -> None:
     """What a run does before it solves is done; components that would start a service are not run."""

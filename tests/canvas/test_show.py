@@ -316,6 +316,7 @@ def test_what_is_nested_as_deep_as_an_archive_may_be_is_shown(tmp_path: Path) ->
         assert shown.exit_code == 0 and shown.exception is None, shown.exception
 
 
+@pytest.mark.soak
 def test_clusters_within_clusters_end_somewhere(tmp_path: Path) -> None:
     inner = archive.to_bytes(definition())
     for _ in range(150):

@@ -120,6 +120,7 @@ def test_the_same_sweep_is_one_job(home: Home) -> None:
     assert again["table"] == first["table"]
 
 
+@pytest.mark.soak
 def test_partial_results_and_a_change_that_cancels(home: Home) -> None:
     """What is done is shown; other values cancel the job; _run False cancels it too, and the same values begin anew."""
     placed = Placed("Sweep")

@@ -306,6 +306,7 @@ def test_the_first_serve_tells_the_client_which_python(home: Home) -> None:
     assert CLIENTS[-1].instance == home.told["instance"]
 
 
+@pytest.mark.soak
 def test_a_start_that_died_is_begun_again(home: Home, monkeypatch: pytest.MonkeyPatch) -> None:
     """It goes on where nobody waits for it."""
     home.folder.mkdir(mode=0o700)

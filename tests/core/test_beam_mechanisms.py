@@ -142,7 +142,7 @@ def test_a_truss_of_hinged_beams_is_stable(hinged: str, turns: int) -> None:
     assert "turns most: hold it by the rotations of an anchor" in beside.message
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 @pytest.mark.parametrize("hinged", ["yz", "xyz"])
 def test_hinged_beams_buckle_snap_and_vibrate_as_bars(hinged: str) -> None:
     """Free turns of joints do not keep a truss from its factors: those of springs with its EA, whose unknowns are

@@ -264,6 +264,7 @@ def test_spheres_dropped_into_a_box_come_to_rest_at_a_random_packing(
     assert apart.min() > 0.9 * 2.0 * r
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("seed", range(6))
 def test_newton_follows_contacts_that_come_and_go(seed: int) -> None:
     """Spheres that springs draw to one place touch others at rest than at the start. At rest the largest force that is

@@ -272,6 +272,7 @@ def scene_of(seed: int) -> tuple[Springs, str]:
     return joined(*parts), str(rng.choice(SOLVERS))
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("seed", SEEDS)
 def test_an_independent_evaluator_agrees_with_the_status(seed: int) -> None:
     """Converged is at rest in every component, and no component adrift; and what is at rest is called converged, unless

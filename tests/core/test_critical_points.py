@@ -48,7 +48,7 @@ def trussed(x: Floats, pairs: Floats, supports: Floats) -> Scene:
     return Scene.read({"particles": x, "forces": [springs, load], "anchors": anchors, "settings": settings})
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 @seeds(4, soak=100)
 def test_random_trusses_of_von_mises_snap_where_they_are_singular(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Three to five bars from a ring to an apex that is not in its middle. The tangent changes in proportion to the

@@ -61,6 +61,7 @@ def buckled(n: int, part: float) -> float:
     return float(heights(first).max())
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("solver", ["auto", "newton"])
 @pytest.mark.parametrize("part", [1.001, 1.01, 2.0])
 def test_a_column_beyond_its_critical_load_buckles(part: float, solver: str) -> None:
@@ -318,6 +319,7 @@ def exact_step(structure: Springs, x: np.ndarray) -> float:
     return float(np.linalg.norm(step.reshape(-1, 3), axis=1).max())
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("solver", ["relaxation", "newton", "auto", "multilevel"])
 @pytest.mark.parametrize(("n", "factor"), [(6, 0.9), (20, 1.0), (20, 1.01), (66, 0.95)])
 def test_position_errors_are_those_of_one_exact_step(n: int, factor: float, solver: str) -> None:

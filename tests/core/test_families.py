@@ -153,6 +153,7 @@ def test_a_tensegrity_finds_its_twist_radius_and_height(struts: int) -> None:
     assert x[:, 2] == pytest.approx(3, abs=100 * TIGHT)
 
 
+@pytest.mark.soak
 def test_a_cushion_at_low_pressure_is_a_stretched_membrane() -> None:
     """0.07367 p a^2 / s at the middle (Timoshenko and Goodier, art. 107); a mesh of n quads is off by (pi / n)^2 / 4 of
     it, and a rise of 0.3 % of the side stretches it by 1e-5 of E, 0.2 % of the prestress."""

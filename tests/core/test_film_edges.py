@@ -52,7 +52,7 @@ def test_edge_cables_of_a_plane_film_are_arcs(kind: str) -> None:
     assert slopes(errors) == pytest.approx([2, 2, 2], abs=0.1)
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_a_hoop_that_a_film_draws_open() -> None:
     """Film T from a ring of radius 1 to a hoop at a height, held there alone: a catenoid r = a cosh((z - b) / a).
 

@@ -76,7 +76,7 @@ def pulls() -> list[dict[str, Any]]:
     return found
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 @pytest.mark.parametrize("kind", ["quads", "triangles"])
 def test_the_ribbon_held_and_sliding(kind: str) -> None:
     """Held: the area that other code comes to, to 2e-4 of it, what the mesh leaves open (258.92 of 280.87 m2 drawn).

@@ -144,7 +144,7 @@ def test_all_solvers_find_scherks_surface(name: str) -> None:
     assert off_scherk(film(x, faces, rim, evenness=0.2, **more).particles) <= 2.0 * errors[-1]
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 @pytest.mark.parametrize("name", ["auto", pytest.param("relaxation", marks=pytest.mark.soak), "newton"])
 def test_bubbles_on_a_disc_are_caps_of_spheres(name: str) -> None:
     """Sphere p = 2 T / R over a rim of radius 1: height R - sqrt(R^2 - 1), up to nearly half a sphere, order 2.

@@ -94,6 +94,7 @@ def dense(system: System) -> tuple[np.ndarray, float]:
     return x, worst
 
 
+@pytest.mark.thinned
 @SEEDED
 @given(seed=some.integers(0, 2**32 - 1), contrast=some.sampled_from([0.0, 2.0]))
 @pytest.mark.parametrize("way", WAYS)

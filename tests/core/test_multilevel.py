@@ -246,7 +246,7 @@ def crossed(side, *, factor=0.9, load=-500.0):
     return spec
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_auto_takes_it_for_a_large_net_and_relaxation_where_another_shape_may_be_lower(monkeypatch):
     """4,096 particles that pull; the same pressed together, which may be at rest in many shapes; and again where
     relaxation would take too long: told so."""

@@ -182,7 +182,7 @@ def test_forces_of_one_name_or_none_are_called_by_their_place() -> None:
     assert found(*cables)[0].startswith("/forces/1: 4 of 6 particles lie on lines of /forces/0")
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_only_the_start_is_looked_at(monkeypatch: pytest.MonkeyPatch) -> None:
     """Not one force alone, and no patch of a running simulation."""
     cables = [springs(f"c{n}", polyline([0, 0, 0], [1, 0, 0], n)) for n in (4, 5)]

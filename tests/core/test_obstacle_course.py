@@ -76,7 +76,7 @@ def test_the_scordelis_lo_roof_with_64_by_64_faces() -> None:
     assert scordelis_lo(64) == pytest.approx(1.0, abs=0.02)
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_the_pinched_cylinder_with_16_by_16_faces_on_an_eighth() -> None:
     """Within 15 % of 1.8248e-5; finer meshes are left to `make soak`."""
     assert pinched_cylinder(64, 32) == pytest.approx(1.0, abs=0.15)

@@ -268,7 +268,7 @@ def test_an_evaluator_of_its_own_agrees_with_the_status(seed: int) -> None:
         assert "Nothing supports" in found.message
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_the_evaluator_notices_what_is_not_at_rest() -> None:
     """Negative control: of 10 scenes at rest, one particle moved by a thousandth breaks the verdict."""
     seen = 0

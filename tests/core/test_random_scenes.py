@@ -68,7 +68,7 @@ def bar(case: Outcome) -> float:
     return max(case.spec["settings"]["tolerance"], case.result.rounding_floor) * case.found.scale
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_reactions_contacts_and_loads_sum_to_zero(outcomes: list[Outcome]) -> None:
     """Sum of reactions + contacts + soft anchors + loads = 0 in force and in moment, floors included.
 

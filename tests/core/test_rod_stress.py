@@ -49,7 +49,7 @@ def derivatives(f: Any, at: Floats) -> tuple[Floats, Floats]:
     return first, second
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 @pytest.mark.parametrize(("held", "seed"), [(True, 0), (False, 0), pytest.param(False, 1, marks=pytest.mark.soak)])
 def test_it_is_what_the_change_of_moments_makes_of_the_second_derivatives(held: bool, seed: int) -> None:
     """Sum of k s' (u, psi) . s'' of the turns s in the frame, with the spin psi of a free rod as an unknown that goes

@@ -47,7 +47,7 @@ def pinched_ring(force: float, axial: float) -> float:
     return float(y[0, -1])
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_a_ring_pinched_by_two_forces() -> None:
     """F = 3 at EI = R = 1: half height 0.690; at the forces the curvature is reversed, where an angle without a side
     would take it for one to the same side. Order 2: slopes 2 +- 0.15, and 8 / 320^2 = 8e-5 at 320 bars.
@@ -330,7 +330,7 @@ def test_unstable_modes_of_a_pressed_ring_are_the_negative_eigenvalues(n: int) -
     assert np.abs(values).min() > 1e-7 * values[-1], values[:8] / values[-1]
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_newton_comes_to_the_last_digits_of_a_long_coil_quadratically() -> None:
     """400 corners of three turns, on a clamp: from 1e-3 of the load to rounding in three steps.
 

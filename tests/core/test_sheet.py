@@ -166,7 +166,7 @@ def test_edges_with_springs_are_not_drawn_twice() -> None:
         assert collect(relax(scene), scene).shape.edged.tolist() == [edged]
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_frames_are_drawn_behind_the_first_one_faintest(tmp_path: Path, words: list[str]) -> None:
     scene = cable()
     result = relax(scene)
@@ -220,7 +220,7 @@ def test_curves_alone_are_drawn_solid_with_their_unit(tmp_path: Path, words: lis
     assert near(pixels, LINES[1]).sum() > 50
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_a_panels_length_in_pixels_is_the_same_in_all(tmp_path: Path) -> None:
     """Squares of 2 m and of 100 cm: twice as wide. Tolerance: the line's thickness, under 5 pixels on both sides."""
     given = panels([square(2.0), square(100.0, "cm")])
@@ -234,7 +234,7 @@ def test_a_panels_length_in_pixels_is_the_same_in_all(tmp_path: Path) -> None:
     assert abs(widths[False][0] - widths[False][1]) <= 10
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 @pytest.mark.parametrize("count", sampled([5, 4, 3, 2, 1], 5))
 def test_no_panel_is_blank_and_nothing_runs_off_the_edge(count: int, tmp_path: Path) -> None:
     scene, mesh = cable(), film(4)
@@ -298,7 +298,7 @@ def test_a_palette_keeps_white_what_is_kept_and_areas(seed: int) -> None:
     assert not off[(pixels == 255).all(axis=2)].any() and not off[2:4].any()
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_a_graph_has_its_lines_dots_grid_and_words(tmp_path: Path, words: list[str]) -> None:
     x = np.linspace(0.0, 3.0, 40)
     graph = Graph(

@@ -243,7 +243,7 @@ def test_what_has_slipped_stays() -> None:
     assert state.memory[0].sum() == pytest.approx(0.0, abs=1e-14)
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_in_physical_time_slips_take_energy() -> None:
     """A weight that bounces on a cable over a rough saddle: memory changes with the steps, its sum stays 0, and the
     bounces halve at least without any damping; without friction they stay."""

@@ -135,6 +135,7 @@ SURFACES: dict[str, tuple[Heights, float, tuple[float, float], float]] = {
 }
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("kind", ["quads", "triangles"])
 @pytest.mark.parametrize("name", SURFACES)
 def test_minimal_surfaces_on_a_square(name: str, kind: str) -> None:

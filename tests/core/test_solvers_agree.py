@@ -229,6 +229,7 @@ def test_there_are_twelve_scenes_and_every_solver_takes_part() -> None:
     assert all(takes[m] == 12 for m in ("auto", "relaxation", "momentum", "verlet", "newton"))
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("method", [m for m in SOLVERS if m != "relaxation"])
 @pytest.mark.parametrize("name", SCENES)
 def test_two_solvers_find_the_same_energy_and_shape(name: str, method: str) -> None:

@@ -312,7 +312,7 @@ def in_its_own_steps(seed: int) -> dict[str, Any]:
     return {**spec, "settings": {"floor": floor, "solver": scheme, "drag": float(rng.choice([0.0, 0.1, 1.0]))}}
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_steps_that_are_chosen_never_diverge():
     """Forty frames of each random scene, as it is and made fit to move: none diverges, and none is warned of."""
     for seed in range(COUNT):

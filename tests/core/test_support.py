@@ -16,7 +16,7 @@ from hookean.pictures.visible import _of_result
 from .beam_scenes import load, rotation, row, scene, straight
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_a_support_resists_as_stiff_as_it_is() -> None:
     """A rigid bar on springs: d = F / k at its middle and phi = M / kr; beyond half a turn it pulls the shorter way."""
     rigid = {"E": 1e9, "G": 1e9, "A": 1.0, "Iy": 1.0, "Iz": 1.0, "J": 1.0}

@@ -105,7 +105,7 @@ def test_counting_a_huge_sweep_costs_nothing() -> None:
         Sweep.read({"settings": dict.fromkeys("abcde", long)})
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 @settings(max_examples=examples(12), deadline=None)
 @given(st.lists(patches, min_size=1, max_size=4), st.data())
 def test_a_row_is_the_same_whatever_was_solved_before(several: list[dict[str, Any]], data: st.DataObject) -> None:

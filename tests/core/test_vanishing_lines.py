@@ -154,7 +154,7 @@ def test_a_foam_collapses_to_the_same_energy_by_all_solvers(seed: int) -> None:
             assert other.residual > 1e-6
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 @pytest.mark.parametrize("seed", [0, 1, 2])
 def test_a_foam_collapses_to_the_same_energy_by_momentum_and_in_time(seed: int) -> None:
     x, lines, rim = foam(60, seed)

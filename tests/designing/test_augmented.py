@@ -32,6 +32,7 @@ def limited(m: int, **settings: Any) -> dict[str, Any]:
     }
 
 
+@pytest.mark.soak
 def test_the_optimum_is_that_of_sequential_quadratic_programming() -> None:
     """Two methods that share no step end at one objective: each to 1e-6 of its own conditions, 1e-5 of the least."""
     one, two = (design(limited(4, method=method)) for method in ("augmented_lagrangian", "slsqp"))

@@ -51,6 +51,7 @@ def drawn(kind: str, seed: int) -> Problem:
     return Problem.read({"scene": scene, "variables": variables, "goals": goals})
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("kind", [*MEASURED, *(UNMEASURED if SOAK else UNMEASURED[::12])])
 def test_the_drawn_form_by_differences_of_whole_solves(kind: str) -> None:
     """As for columns (test_gradients): differences of order 4 leave 1e-9, of a tangent by differences 1e-7: 1e-6 of

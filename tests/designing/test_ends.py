@@ -143,6 +143,7 @@ def test_what_cannot_be_met_ends_nearest_in_least_squares() -> None:
     assert found.status == "infeasible" and found.result.particles[1, 2] == pytest.approx(-0.875, abs=1e-5)
 
 
+@pytest.mark.soak
 def test_with_constraints_the_answer_does_not_use_their_slack() -> None:
     """Two bars of least load path from a wall to a load: 45 degrees, sum |F| L = 2 P L = 6 (Michell 1904)."""
     bars = {"kind": "springs", "name": "b", "particles": [[0, 2], [1, 2]], "stiffness": 1000.0, "rest_length": [1, 1.2]}
@@ -198,6 +199,7 @@ def test_a_goal_that_no_variable_changes_is_reported() -> None:
     assert found.objective == pytest.approx(1.0, abs=1e-9)
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("method", [name for name in METHODS if name != "augmented_lagrangian"])  # needs constraints
 def test_a_search_that_begins_at_its_goals_converges(method: str) -> None:
     """Where all goals are met but for rounding at the start, there is no smaller objective to compare slopes with."""

@@ -61,6 +61,7 @@ def test_every_force_is_differentiated_or_refused() -> None:
         sensitivity(problem(RIGID, ["strength"], 0))
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("kind", sorted(FOUND - {RIGID}))
 def test_the_adjoint_is_the_difference_of_whole_solves(kind: str) -> None:
     """dg/du = y . df/du with K y = dg/dx, for every force by its columns: the column and element of the largest
@@ -90,6 +91,7 @@ def test_the_adjoint_is_the_difference_of_whole_solves(kind: str) -> None:
             assert close, (seed, field, unknown, gradient[unknown], expected)
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("kind", sorted(FOUND - {RIGID}))
 def test_products_by_elements_are_those_of_the_matrices(kind: str) -> None:
     """y . df/du and some rows of K^T y, summed element by element, are products with the sparse df/du and the

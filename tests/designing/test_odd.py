@@ -229,6 +229,7 @@ class Chain:
         return missed, objective
 
 
+@pytest.mark.soak
 @settings(max_examples=200 if SOAK else 6)
 @given(seed=st.integers(0, 10**6))
 def test_the_status_of_random_problems_is_true(seed: int) -> None:

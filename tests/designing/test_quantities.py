@@ -109,6 +109,7 @@ def test_all_quantities_are_tried() -> None:
     assert {given["kind"] for given in KINDS} | {"buckling_factor"} == set(QUANTITIES)
 
 
+@pytest.mark.soak
 def test_a_braced_post_has_the_buckling_factor_that_is_asked_for() -> None:
     """A post of height h under a load P at its top, which springs of stiffness c / 2 hold on either side: it buckles at
     c h / P times the load (rigid post on a spring; Timoshenko and Gere, Theory of Elastic Stability, 1961, 2.1)."""

@@ -70,7 +70,7 @@ def on_faces(mesh_points: np.ndarray, faces: list[Any], u: int, v: int) -> None:
     assert cKDTree(marks).query(mesh_points)[0].max() <= 1e-12 * np.abs(marks).max()
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 @pytest.mark.parametrize("counts", sampled([(5, 3), (4, 4)], 2))
 def test_all_133_untrimmed_faces(counts: tuple[int, int], rhino_objects: Any) -> None:
     u, v = counts

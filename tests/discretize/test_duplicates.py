@@ -79,7 +79,7 @@ def test_blocks_of_any_size_give_the_same(monkeypatch: pytest.MonkeyPatch) -> No
     assert whole[0].tolist() == kept and whole[1].tolist() == place
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_a_hundred_thousand_lines_given_twice_and_turned() -> None:
     rng = np.random.default_rng(1)
     lines = rng.uniform(0, 10, (50_000, 2, 3))

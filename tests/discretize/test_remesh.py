@@ -103,7 +103,7 @@ def test_a_sphere_stays_a_sphere() -> None:
     assert 1 - hd.area(made) / (4 * np.pi) == pytest.approx(5 / 24 * square, rel=0.25)
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_the_rims_of_a_cylinder_stay_circles() -> None:
     """In their planes, at the vertices of a polygon with 64 sides, or on them: between cos(pi/64) and 1."""
     made = hd.remesh(cylinder(), 0.25)

@@ -101,6 +101,7 @@ def cases() -> list[Any]:
     return found
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize(("work", "error", "sticky"), cases())
 def test_what_cannot_be_stored_is_refused_and_changes_nothing(
     work: str, error: int, sticky: bool, disk: Disk, served: Served

@@ -40,6 +40,7 @@ def rows(data: bytes) -> list[bytes]:
     return [data[record.start : record.end] for record in scan(data).objects]
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("version", [4, 5, 6, 7, 8])
 @pytest.mark.parametrize("own", [{}, {"author": "Ada ü", "part\\entry": "line\nline", "hookean:old": "gone"}])
 def test_text_is_added_and_what_was_there_stays(
@@ -63,6 +64,7 @@ def test_text_is_added_and_what_was_there_stays(
         assert read(again).text == read(out).text
 
 
+@pytest.mark.thinned
 def test_real_files_get_text_and_keep_their_tables(real: Path, tmp_path: Path, additions: Additions) -> None:
     out, plain = tmp_path / "out.3dm", tmp_path / "plain.3dm"
     before = read(real)

@@ -91,6 +91,7 @@ def test_numbers_that_look_like_a_nested_chunk_are_numbers(version: int) -> None
     assert struct.pack("<II", 0x40008000, 40) in data and scan(data).notes == ()
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("version", [4, 8])
 @pytest.mark.parametrize(("place", "label"), [(1, 'detail view "page"'), (2, 'annotation "note"'), (3, 'mesh "sheet"')])
 def test_one_wrong_bit_names_the_object(version: int, place: int, label: str) -> None:

@@ -293,6 +293,7 @@ def _mutated(data: bytes, chance: random.Random) -> bytes:
     return bytes(changed)
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("seed", range(6))
 def test_damaged_files_give_a_scene_or_a_sentence(seed: int) -> None:
     """Cuts and mutations of good files: nothing but InputError, whatever is in them."""

@@ -63,6 +63,7 @@ def operations(running: Served) -> dict[str, Any]:
     return {operation.label: operation for found in schema.get_all_operations() if (operation := found.ok())}
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("label", sampled(LABELS, 3))
 def test_every_answer_is_described(label: str, running: Served, operations: dict[str, Any]) -> None:
     operation, seen = operations[label], set()
@@ -139,6 +140,7 @@ def _made(running: Served, key: str) -> None:
         running.client.put(f"/v1/sessions/{key}", json=CABLE)
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("label", [pytest.param(s, marks=[] if "}/" in s else [pytest.mark.soak]) for s in LABELS])
 def test_values_at_their_limits_and_other_methods_are_described(
     label: str, running: Served, operations: dict[str, Any]

@@ -65,6 +65,7 @@ def yielding() -> System:
     return compile(Scene(particles=x, forces=[springs], anchors=[{"particles": [0, 5]}], settings={"drag": 0.0}))
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("keep", ["copy", "file", ""])
 @pytest.mark.parametrize("method", SOLVERS)
 @pytest.mark.parametrize("family", [*FAMILIES, "yielding"])

@@ -45,6 +45,7 @@ def buffers(value: Any, floats: str = "<f8", whole: str = "<i8") -> Any:
     return [buffers(v, floats, whole) for v in value] if isinstance(value, list | tuple) else value
 
 
+@pytest.mark.thinned
 @kinds
 @seeds(10, soak=30)
 def test_canonical_json_read_again_is_the_same_scene(kind: str, seed: int) -> None:
@@ -57,6 +58,7 @@ def test_canonical_json_read_again_is_the_same_scene(kind: str, seed: int) -> No
         assert np.array_equal(getattr(again.forces[0], name), getattr(scene.forces[0], name)), name
 
 
+@pytest.mark.thinned
 @kinds
 @pytest.mark.parametrize("whole", ["<i8", "<i4", "<u4"])
 def test_arrays_as_buffers_are_the_same_scene(kind: str, whole: str) -> None:

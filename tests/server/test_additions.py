@@ -61,6 +61,7 @@ def edited(client: httpx.Client, address: str, **edit: Any) -> dict[str, Any]:
     return found
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("what", [*SOME, *(pytest.param(name, marks=pytest.mark.soak) for name in OTHERS), *FILES])
 def test_a_load_and_self_weight_are_added_to_any_scene(client: httpx.Client, what: str) -> None:
     address = opened(client, what)

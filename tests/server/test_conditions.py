@@ -67,6 +67,7 @@ def headers(client: httpx.Client, name: str, given: str) -> dict[str, str]:
     return {name: given.format(now=now, before=before, bare=now.strip('"'))}
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("change", CHANGES)
 def test_a_change_is_refused_where_its_condition_is_not_met(client: httpx.Client, change: str) -> None:
     """Section 13.1.1: If-Match compares strongly; 13.1.2: If-None-Match weakly. The refusal has the ETag that is, and
@@ -79,11 +80,13 @@ def test_a_change_is_refused_where_its_condition_is_not_met(client: httpx.Client
     assert "b" not in [session["key"] for session in client.get("/v1/sessions").json()["sessions"]]
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize(("change", "met"), [*[(change, MET[0]) for change in CHANGES], *[("PATCH", m) for m in MET]])
 def test_a_change_is_made_where_its_condition_is_met(client: httpx.Client, change: str, met: tuple[str, str]) -> None:
     assert CHANGES[change](client, headers(client, *met)).status_code in (200, 201, 204)
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("change", CHANGES)
 def test_an_etag_of_a_deleted_session_matches_none_made_again(client: httpx.Client, change: str) -> None:
     """Under the same key, of the same scene, at the same revision."""

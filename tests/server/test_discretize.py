@@ -153,6 +153,7 @@ def test_arrays_as_buffers(client: httpx.Client) -> None:
 GRID = SMALL["edges"]["mesh"]
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize(
     ("name", "body", "pointer"),
     [

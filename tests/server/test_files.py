@@ -112,6 +112,7 @@ def _with(client: httpx.Client, drawing: bytes, recipe: dict[str, Any], **more: 
     return client.post("/v1/relax/3dm", files={"file": ("a.3dm", drawing)}, data=data, **more)
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("part", [0.2, 0.5, 0.9, 0.99])
 def test_damaged_files(client: httpx.Client, drawing: bytes, part: float) -> None:
     found = problem(post(client, drawing[: int(part * len(drawing))]), 422, "invalid-input")
@@ -146,6 +147,7 @@ ENDS: dict[str, dict[str, Any]] = {
 }
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("status", sampled(ENDS, 2))
 def test_a_file_says_how_its_run_ended(client: httpx.Client, drawing: bytes, tmp_path: Path, status: str) -> None:
     """Headers, document text, report and `/v1/relax` of the same scene say the same, with the same status code; the

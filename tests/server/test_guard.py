@@ -102,6 +102,7 @@ def cookie(served: Served) -> str:
     return served.client.post("/v1/login").headers["set-cookie"].split(";")[0]
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize(("kind", "host", "origin", "site"), sampled(MATRIX, 7))
 def test_only_ours_pass(served: Served, cookie: str, kind: str, host: str, origin: str, site: str) -> None:
     """300 lines, outside soak every seventh, with four kinds of token each: what passes is what the rule lets pass."""

@@ -194,6 +194,7 @@ def component(name: str) -> Component:
     return Component(SERVICE.call, f"/{name}")
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("case", [*CASES, *(LONG if SOAK else [])], ids=lambda c: f"{c[0]} {c[2]}")
 def test_a_figure_has_the_numbers_of_its_folder(case: tuple[str, Any, str, dict[str, Read]]) -> None:
     name, given, folder, numbers = case

@@ -149,6 +149,7 @@ DIRECT += ("first_points", "second_points", "strips", "densities")
 OWN = [name for name in OPERATIONS if name != "catenary"]  # which is one of its own
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("name", OWN)
 def test_an_operation_gives_what_its_function_gives(name: str, service: Service) -> None:
     """To the bit, with its options at their defaults."""

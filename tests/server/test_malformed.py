@@ -24,6 +24,7 @@ def test_the_scene_they_are_made_from_is_good(client: httpx.Client) -> None:
     assert client.post("/v1/relax", json=malformed.GOOD).status_code == 200
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("name", TRIED, ids=range(len(TRIED)))
 def test_malformed(client: httpx.Client, name: str) -> None:
     body, pointer = CASES[name]

@@ -57,6 +57,7 @@ def asked(served: Served, method: str, path: str, **headers: str) -> tuple[int, 
     return found
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("template", sampled([t for t in TEMPLATES if not t.endswith("/events")], 3))
 def test_head_is_get_without_its_body(served: Served, known: dict[str, str], template: str) -> None:
     """The same status and headers, an empty body, and a connection that goes on (RFC 9110, 9.3.2)."""
@@ -84,6 +85,7 @@ def test_head_of_events_does_not_wait_for_them(served: Served, known: dict[str, 
 ENDLESS = {"solver": "verlet", "drag": 0, "time_step": 0.001, "max_iterations": 10**9, "tolerance": 0}
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("template", TEMPLATES)
 def test_allow_lists_every_method_and_no_other(served: Served, known: dict[str, str], template: str) -> None:
     """A method that Allow does not list is 405 with the same Allow; one that it lists is not 405 (RFC 9110, 15.5.6).

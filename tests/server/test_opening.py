@@ -28,6 +28,7 @@ def opened(client: httpx.Client, name: str, data: str | bytes, **more: Any) -> h
     return client.post("/v1/sessions", files={"file": (name, data), **more})
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize(
     ("name", "data", "particles", "held"),
     [
@@ -117,6 +118,7 @@ def test_what_was_told_of_a_file_and_a_new_name_outlive_the_server(tmp_path: Pat
         second.end()
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize(
     ("name", "data", "pointer", "said"),
     [
@@ -141,6 +143,7 @@ def test_the_limit_of_files_is_that_of_all(client: httpx.Client) -> None:
     problem(opened(client, "a.obj", b"#" * 65 * 2**20), 413, "too-large")
 
 
+@pytest.mark.soak
 def test_damaged_files_are_problems_of_the_file(client: httpx.Client, tmp_path: Path) -> None:
     """Cuts and mutations of good files: a session, or 422 with a sentence, never the server's failure."""
     chance = random.Random(7)

@@ -65,6 +65,7 @@ def test_every_path_is_in_the_list() -> None:
     assert listed - {"/v1/openapi.json"} == described
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("path", sampled(PATHS, 3))
 def test_other_methods_are_refused_in_one_shape(client: httpx.Client, path: str) -> None:
     for method in METHODS:
@@ -229,6 +230,7 @@ def test_a_failure_of_the_service_itself() -> None:
     problem(response, 500, "internal")
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize(
     ("form", "pointer"),
     [

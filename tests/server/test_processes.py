@@ -219,6 +219,7 @@ def test_a_connection_is_kept_longer_than_clients_keep_it(served: Served) -> Non
     connection.close()
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize(
     ("what", "number"),
     [
@@ -324,6 +325,7 @@ def test_ctrl_c_reaches_the_whole_group() -> None:
     assert process.returncode == 0 and said == ""
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(
     "seconds", [0.15, *(pytest.param(late, marks=pytest.mark.soak) for late in (0.0, 0.05, 0.3, 1.0))]
 )

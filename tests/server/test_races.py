@@ -363,6 +363,7 @@ def test_a_client_that_leaves_while_a_session_wakes_leaves_it_whole(begun: Begun
     asyncio.run(left())
 
 
+@pytest.mark.soak
 def test_no_more_are_awake_than_may_be_however_many_are_asked_for_at_once(begun: Begun) -> None:
     async def asked() -> int:
         store = Store(None)

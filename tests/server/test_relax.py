@@ -41,6 +41,7 @@ def lists(value: Any) -> Any:
     return [lists(v) for v in value] if isinstance(value, list) else value
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("name", SCENES)
 def test_lists_are_the_same_to_the_bit(client: httpx.Client, name: str) -> None:
     answer = client.post("/v1/relax", json=SCENES[name])

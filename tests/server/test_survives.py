@@ -69,6 +69,7 @@ def state_of(count: int) -> int:
     return len(parts.state_bytes(simulation)) * count // (side * side)
 
 
+@pytest.mark.thinned
 @pytest.mark.skipif(not Path("/proc/self/io").exists(), reason="counts the bytes written by /proc/self/io")
 @pytest.mark.parametrize(("particles", "sessions", "most"), [(10_000, 1, 20e6), (10_000, 5, 20e6), (490_000, 1, 50e6)])
 def test_playing_writes_within_its_budget(particles: int, sessions: int, most: float, tmp_path: Path) -> None:
@@ -216,7 +217,7 @@ def edited(count: int, chance: np.random.Generator) -> tuple[bytes, Simulation, 
     return base, simulation, found.edits, found.revisions
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 @pytest.mark.parametrize("seed", sampled(range(12), 4))
 def test_old_edits_become_base_and_all_that_can_be_taken_back_stays(seed: int) -> None:
     """The history of 450 random edits is the same from the folded base: its length both ways, and each setup."""

@@ -70,6 +70,7 @@ def reader(browser: Any, service: Service) -> Iterator[Any]:
     assert [wrong for one in opened for wrong in one.wrong] == []
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(("size", "scheme"), sampled([(PHONE, "dark"), (LAPTOP, "light")], 2))
 def test_every_page_fits_and_loads_only_its_own(reader: Any, pages: list[str], size: Any, scheme: str) -> None:
     """No page is wider than the window; nothing on the console, such as a refusal by the policy; pictures are

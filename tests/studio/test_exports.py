@@ -53,6 +53,7 @@ def same_points(found: NDArray[np.float64], drawn: NDArray[np.float64], within: 
     return bool(distances.min(axis=1).max() < within and distances.min(axis=0).max() < within)
 
 
+@pytest.mark.soak
 def test_stl_glb_and_svg_have_the_form_that_is_seen(membrane: Studio):
     """STL: two triangles for each quadrilateral, normals of length 1; GLB: the particles and lines between them; SVG: a
     line for each spring, as long as the canvas shows it. Numbers are of single precision; those of SVG have two digits

@@ -68,6 +68,7 @@ def test_a_refusal_covers_nothing_on_the_start_page(open_studio: Opened, size: d
         alert.wait_for(state="hidden")
 
 
+@pytest.mark.thinned
 @SIZES
 def test_a_notice_covers_nothing_in_a_session_and_closes_with_esc(open_studio: Opened, size: dict[str, int]) -> None:
     """What is picked stays picked at the first Esc; on a laptop the canvas keeps its size."""

@@ -36,6 +36,7 @@ def test_where_nothing_is_held_the_page_says_so_and_holds_the_rim(tab: Studio):
     assert held.tolist() == [i for i in range(16) if i // 4 in (0, 3) or i % 4 in (0, 3)]
 
 
+@pytest.mark.soak
 def test_a_form_out_of_view_is_brought_back(tab: Studio):
     tab.service.put("repair-view", net(4))
     tab.open("repair-view")

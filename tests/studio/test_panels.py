@@ -33,6 +33,7 @@ def cable(tab: Studio, request: pytest.FixtureRequest) -> Studio:
     return tab
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize(
     ("slider", "force", "field", "along"),
     [
@@ -68,6 +69,7 @@ def test_a_slider_is_dragged_and_the_form_follows(cable: Studio, slider: str, fo
     cable.rests_at(equilibrium(NAMED))
 
 
+@pytest.mark.soak
 def test_a_number_is_typed_and_a_wrong_one_is_refused_in_a_sentence(cable: Studio):
     page, service, key = cable.page, cable.service, cable.key
     field = page.get_by_role("spinbutton", name="cable stiffness").or_(
@@ -143,6 +145,7 @@ def test_a_locked_axis_keeps_the_others(cable: Studio):
     assert held[0][:2] == pytest.approx(before[:2], abs=1e-9) and held[0][2] > before[2] + 0.1
 
 
+@pytest.mark.soak
 def test_a_warning_of_the_report_is_seen_with_its_particles(tab: Studio):
     """A loaded particle that nothing holds is named in a sentence; choosing that brings it into view, ringed in red."""
     loose = {**CABLE, "particles": [*CABLE["particles"], [20.0, 0.0, 0.0]]}

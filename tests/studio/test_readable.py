@@ -112,6 +112,7 @@ def shown(open_studio: Opened, where: str, size: dict[str, int], theme: str) -> 
     return studio
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("eyes", sampled([(where, *eyes) for eyes in EYES for where in ("session", "start")], 3))
 def test_all_is_legible_and_nothing_overlaps(open_studio: Opened, eyes: tuple[str, dict[str, int], str]):
     """No text below 11 px or over other text, no control covered, no scrolling sideways; axe finds nothing serious."""

@@ -94,6 +94,7 @@ def test_the_surface_is_coloured_and_its_extremes_are_those_of_python(studio: St
     page.get_by_role("radio", name="Nothing").check()
 
 
+@pytest.mark.soak
 def test_load_cases_are_solved_and_the_largest_values_listed(studio: Studio):
     page = studio.page
     unfold(studio, "Load cases")
@@ -124,6 +125,7 @@ def test_load_cases_are_solved_and_the_largest_values_listed(studio: Studio):
     assert page.get_by_label("Show the case").input_value() == ""
 
 
+@pytest.mark.soak
 def test_a_recording_is_scrubbed_charted_and_saved(studio: Studio, tmp_path: Path):
     page, service, key = studio.page, studio.service, studio.key
     unfold(studio, "Time")
@@ -205,6 +207,7 @@ def test_nothing_here_is_hard_to_reach(studio: Studio):
     page.set_viewport_size(LAPTOP)
 
 
+@pytest.mark.soak
 def test_cloth_is_coloured_by_its_utilisation(studio: Studio):
     """Numbers of the page in percent; those of cloth are offered for models that have cloth."""
     page, service = studio.page, studio.service

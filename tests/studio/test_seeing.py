@@ -52,6 +52,7 @@ def test_outliers_do_not_set_the_scale_and_are_marked(tab: Studio):
     assert high < 0.02 / 1.01 * 500 + 1
 
 
+@pytest.mark.soak
 def test_named_views_are_orthographic(tab: Studio):
     """Particles that differ only in depth are drawn at the same place, to less than a pixel."""
     scene = net(3)

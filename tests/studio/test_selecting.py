@@ -196,6 +196,7 @@ def middle(studio: Studio, face: list[int]) -> tuple[float, float]:
     return float(x), float(y)
 
 
+@pytest.mark.soak
 def test_single_faces_are_selected_and_get_a_force(sheet: Studio) -> None:
     """Two of 4 x 4 faces by clicks, their strip and the one across, 2 x 2 by a box; pressure and then area weight act
     on these four alone, which become one mesh; each addition is undone by itself."""

@@ -26,6 +26,7 @@ def seen(studio: Studio, particle: int) -> np.ndarray:
     return np.array([x - box["x"] - box["width"] / 2, y - box["y"] - box["height"] / 2]) / box["height"]
 
 
+@pytest.mark.soak
 def test_a_read_only_link_shows_the_same_view_live_and_changes_nothing(tab: Studio, open_studio: Opened):
     """The camera is the same to a pixel in 800, colours, selection and a group of many are the same; frames come while
     its owner plays; a drag turns the view and keys do nothing; once revoked, it reports that."""

@@ -199,6 +199,7 @@ def test_what_is_no_model_is_explained(studio: Studio, roof: Path) -> None:
     page.get_by_role("alert").filter(has_text="at least 0 allowed").wait_for()
 
 
+@pytest.mark.soak
 def test_the_recipe_is_edited_and_saved(studio: Studio, roof: Path, tmp_path: Path) -> None:
     """What is saved is what the command line accepts; what is changed by hand is what the model is made of."""
     page = studio.page

@@ -73,6 +73,7 @@ def test_a_slider_is_fine_wide_with_shift_and_takes_any_typed_value(tab: Studio)
     tab.until(lambda: stiffness() == 12345)
 
 
+@pytest.mark.soak
 def test_a_refusal_has_no_pointers_but_in_its_details(tab: Studio) -> None:
     """A session without a label has no key in its title, either."""
     body = family("catenoid", rings=3, rays=8).model_dump(mode="json")

@@ -76,6 +76,7 @@ def test_stability_and_accuracy_are_at_the_status(cable: Studio):
     assert within and float(within[1]) == pytest.approx(state["position_error"], rel=0.05)
 
 
+@pytest.mark.soak
 def test_a_drag_is_told_at_the_hand(cable: Studio):
     """Position, distance and reaction of the particle that is dragged are those of the service; afterwards they go."""
     page, service = cable.page, cable.service
