@@ -298,6 +298,7 @@ def test_which_python_starts_it(home: Home, monkeypatch: pytest.MonkeyPatch) -> 
     assert found.value.slug == "not-started" and not (home.folder / "starting").exists()
 
 
+@pytest.mark.soak
 def test_the_first_serve_tells_the_client_which_python(home: Home) -> None:
     process = home.serve()
     process.terminate()

@@ -219,6 +219,7 @@ def _killed_between_faults(other: Disk, monkeypatch: pytest.MonkeyPatch) -> None
         second.end()
 
 
+@pytest.mark.soak
 def test_an_upload_that_finds_no_room_is_a_problem(disk: Disk, served: Served) -> None:
     """Its body, its copy for the reader and the answer are files for a moment: none stays, whichever cannot be
     written."""

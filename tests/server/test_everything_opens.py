@@ -42,6 +42,7 @@ def works(client: httpx.Client, made: httpx.Response) -> None:
         assert client.delete(address).status_code == 204
 
 
+@pytest.mark.thinned
 @pytest.mark.skipif(not FILES, reason="the files of Rhino are not here")
 @pytest.mark.parametrize("name", sampled((name for name in FILES if name not in SENTENCES), 3))
 def test_a_rhino_file_leads_to_a_model(client: httpx.Client, name: str) -> None:

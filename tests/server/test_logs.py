@@ -86,6 +86,7 @@ def test_a_busy_run_is_quiet_by_default() -> None:
     assert (code, said) == (0, "")
 
 
+@pytest.mark.soak
 def test_a_log_that_nobody_reads_holds_nothing_up() -> None:
     """Several times what a pipe holds: every request is answered, and what was waiting is written at the end."""
     served = Served(PATIENT, workers=1, log="json").ready()

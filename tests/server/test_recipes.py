@@ -7,6 +7,7 @@ from typing import Any
 
 import httpx
 import numpy as np
+import pytest
 
 from fuzz import damage
 from hookean.commands.examples import find
@@ -85,6 +86,7 @@ def test_faulty_requests(client: httpx.Client) -> None:
     assert found["errors"][0]["pointer"] == "/recipe" and "file and choices" in found["detail"]
 
 
+@pytest.mark.soak
 def test_damaged_files_are_the_files_fault(client: httpx.Client) -> None:
     files = damage.seeds()
     for number in range(0, 2000, 500):

@@ -136,6 +136,7 @@ def test_it_starts_the_service_and_opens_a_browser(home: Home, tmp_path: Path) -
     assert token not in said + wrong and code not in said + wrong and not home.told
 
 
+@pytest.mark.soak
 def test_a_second_user_finds_nothing_in_the_list_of_processes() -> None:
     """`nobody` reads the arguments of all processes, over and over, while `hookean studio` opens a browser and for as
     long as it is open, and tries to read what is named there."""

@@ -69,6 +69,7 @@ def served() -> Iterator[Served]:
     server.end()
 
 
+@pytest.mark.soak
 def test_unread_answers_wait_for_each_other_and_not_in_memory(served: Served) -> None:
     """Eight cost no more than twice what one costs, and it is given back; meanwhile the owner is served. The next one
     is refused at once."""

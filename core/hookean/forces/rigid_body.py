@@ -116,7 +116,8 @@ def find_poses(x, indices, parameters, found):  # type: ignore[no-untyped-def]
         if e >= 0:
             find_pose(x, indices, parameters, first, pose, room)
         while e >= 0:
-            found[e] = pose
+            for i in range(POSE):
+                found[e, i] = pose[i]
             e = following(parameters, e)
 
 

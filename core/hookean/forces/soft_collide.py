@@ -197,7 +197,8 @@ def soft_contacts(x, indices, parameters, pair, place):  # type: ignore[no-untyp
                 if inside:
                     if many < pair.shape[0]:
                         pair[many, 0], pair[many, 1], pair[many, 2] = e, near, i
-                        place[many] = room[0]
+                        for c in range(3):
+                            place[many, c] = room[0, c]
                     many += 1
             e = following(parameters, e)
     return many
