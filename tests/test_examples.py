@@ -20,7 +20,7 @@ from hookean.commands import example as command
 from hookean.commands.examples import Example, _figures, examples, figure, find, gallery, home
 from hookean.files.relax_file import read_scene
 from hookean.system.system import compile
-from soak import sampled
+from soak import SOAK, sampled
 
 ALL = examples()
 
@@ -33,8 +33,12 @@ LONG = {"miura", "sphere", "9.32-ribbon", "planar_quads", "bending_gridshell", "
 @pytest.mark.parametrize(
     "example", [pytest.param(e, id=e.name, marks=[pytest.mark.soak] if e.name in LONG else []) for e in ALL]
 )
-def test_a_fresh_run_gives_the_expected_numbers(example: Example) -> None:
-    numbers = example.run().numbers
+def test_a_fresh_run_gives_the_expected_numbers(example: Example, tmp_path: Path) -> None:
+    outcome = example.run()
+    numbers = outcome.numbers
+    if SOAK:  # a picture takes a second
+        example.draw(outcome, tmp_path / "picture.png")
+        assert imread(tmp_path / "picture.png").std() > 0.01, "it is blank"
     assert set(numbers) == set(example.expected.numbers)
     off = {n: float(numbers[n]) for n, e in example.expected.numbers.items() if not e.holds(numbers[n])}
     assert not off, {name: (value, str(example.expected.numbers[name])) for name, value in off.items()}
