@@ -242,8 +242,11 @@ def _filled(wanted: ElasticLine, force: Force, places: Places, pointer: str) -> 
                 axial_stiffness=elastic.axial_stiffness(wanted, places),
                 strength=breaking_force(wanted, places),
             )
-        elif wanted.strength is None and isinstance(force, Springs):
-            wanted = wanted.replaced(strength=breaking_force(force, places))
+        elif isinstance(force, Springs):
+            section = wanted.section or force.section
+            cut = force.replaced(section=section)
+            strength = breaking_force(cut, places) if wanted.strength is None else wanted.strength
+            wanted = wanted.replaced(section=section, strength=strength)
     except InputError as error:
         raise InputError(pointer, error.sentence) from None
     return wanted
@@ -293,6 +296,7 @@ def frozen_springs(line: Line) -> Force:
         tension_only=own.tension_only,
         compression_only=own.compression_only,
         yield_extension=p[:, 6],
+        section=line.wanted.section,
         strength=line.wanted.strength,
     )
 
@@ -309,6 +313,7 @@ def frozen_tension(line: Line) -> Force:
         stiffness=stiffness,
         rest_length=rest,
         lower_cutoff=lower,
+        section=line.wanted.section,
         strength=line.wanted.strength,
     )
 

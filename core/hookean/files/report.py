@@ -17,7 +17,7 @@ from hookean.forces import KINDS
 from hookean.pictures.picture import picture
 from hookean.running.result import Result
 from hookean.running.run import relax
-from hookean.running.utilisation import dimensions
+from hookean.running.utilisation import dimensions, missing
 from hookean.scene.scene import Scene
 from hookean.system.system import System, compile
 
@@ -76,7 +76,9 @@ def reported(
     parts = [f"<h1>{escape(title)}</h1>", *_scene(scene, form), *_form(scene, form, pictures)]
     found, results = list[str](), {"": form}
     if cases is not None:
-        parts += [*_cases(scene, cases), *_envelope(cases.envelope, form), *_reactions(cases.envelope, form)]
+        parts += [*_cases(scene, cases), *_envelope(cases.envelope, form)]
+        some = next(iter(cases.cases.values())).result
+        parts += [*_missing(cases.frozen.scene, some), *_reactions(cases.envelope, form)]
         for name, case in cases.cases.items():
             exceeded = None if limits is None else _exceeded_in(case, cases, limits)
             parts += _case(case, exceeded, pictures)
@@ -116,6 +118,8 @@ def _form(scene: Scene, form: Result, pictures: bool) -> Iterator[str]:
     yield from _loads(form, "Loads that act on the form")
     yield from _carried(form)
     yield _table(("force", "column", "smallest", "largest", "unit"), _ranges(form))
+    if not (scene.load_cases or scene.combinations):
+        yield from _missing(scene, form)
 
 
 def _ranges(result: Result) -> Iterator[tuple[Any, ...]]:
@@ -126,6 +130,13 @@ def _ranges(result: Result) -> Iterator[tuple[Any, ...]]:
             if sizes.size:
                 unit = result.units.of(dimension) or "-"
                 yield entry["name"] or entry["kind"], name, float(sizes.min()), float(sizes.max()), unit
+
+
+def _missing(scene: Scene, result: Result) -> Iterator[str]:
+    """A sentence on each force whose stress or utilisation is not known."""
+    for force, columns in zip(scene.forces, result.forces, strict=True):
+        if said := missing(force, columns):
+            yield f"<p>{escape(said)}</p>"
 
 
 def _loads(result: Result, title: str) -> Iterator[str]:

@@ -202,8 +202,8 @@ def _reactions(system: System, result: Result, built: Built | None) -> Section:
 
 
 def rows(parts: Sequence[Section], result: Result) -> list[Row]:
-    """A row for each element, contact with a floor and reaction; keys are the CSV's header, with units. Lengths and forces are in the
-    scene's units, x y z the middle of the relaxed element, `particles` those it joins."""
+    """A row for each element, contact with a floor and reaction; keys are the CSV's header, with units. Lengths and
+    forces are in the scene's units, x y z the middle of the relaxed element, `particles` those it joins."""
     return [row for part in parts for row in _rows(part, result)]
 
 
