@@ -138,15 +138,16 @@ def test_eccentric_ends_are_linked_and_shear_and_hinges_written(tmp_path: Path) 
 
 
 def test_what_a_file_of_beams_cannot_hold_is_named(tmp_path: Path) -> None:
-    """Springs that go slack, supports that give way, cloth, and beams that are bent in."""
+    """Springs with cutoffs at other lengths, films, and beams that are bent in."""
     spec = frame(curvature="straight")
-    spec["forces"][2]["tension_only"] = True
+    spec["forces"][2]["upper_cutoff"] = 50.0
     spec["meshes"] = {"m": {"vertices": spec["particles"][:3], "faces": [[0, 1, 2]]}}
-    spec["forces"].append({"kind": "membrane", "name": "cloth", "mesh": "m", "warp_stiffness": 1.0})
+    spec["forces"].append({"kind": "soapfilm", "name": "film", "mesh": "m", "tension": 1e-9})
     spec["forces"].append({"kind": "support", "name": "soil", "particles": [2], "stiffness": [1, 1, 1]})
     found = hookean.relax(Scene.read(spec))
     assert found.save(tmp_path / "frame.inp")[1:] == [
-        "cloth, soil: not in the file, which has beams and lines with an axial stiffness.",
-        "stay: trusses that do not go slack; add *NO COMPRESSION or *NO TENSION.",
+        "film: not in the file, which has beams, membranes, lines with an axial stiffness, and elastic supports.",
+        "stay: trusses without their cutoffs.",
         "purlin: the file does not hold the bending of rods that are straight without stress.",
     ]
+    assert block((tmp_path / "frame.inp").read_text(), "SPRING") == [["1"], ["1.0"]]
