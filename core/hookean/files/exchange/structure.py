@@ -99,7 +99,7 @@ class Structure:
         moments[system.slots.particles] = system.slots.moments(loads, system.slots.particles)
         cloth, written = sheets(system)
         lines = tuple(_lines(system, result))
-        used = {part.material for part in (*lines, *cloth)} - {None}
+        used = {line.material for line in lines} | {sheet.material for sheet in cloth}
         return cls(
             state.x[:count],
             (state.x - system.x)[:count],
@@ -121,7 +121,7 @@ class Structure:
             _elastic(result, count),
             _cloth(system, result),
             tuple(cloth),
-            {name: system.places.material(name) for name in sorted(map(str, used))},
+            {name: system.places.material(name) for name in sorted(filter(None, used))},
         )
 
     @property

@@ -49,5 +49,5 @@ def _left(structure: Structure) -> list[str]:
     said = [f"{', '.join(left)}: not in the file, which has {has}."] if left else []
     slack = [g.name for g in structure.lines if g.one_way == "other" and (g.axial_stiffness > 0.0).any()]
     said += [f"{', '.join(slack)}: trusses without their cutoffs."] if slack else []
-    parts = (*structure.beams, *structure.sheets)
-    return said + [f"{part.name}: the file does not hold {what}." for part in parts for what in part.left]
+    parts = [(part.name, part.left) for part in structure.beams] + [(part.name, part.left) for part in structure.sheets]
+    return said + [f"{name}: the file does not hold {what}." for name, without in parts for what in without]
