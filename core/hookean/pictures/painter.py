@@ -219,7 +219,7 @@ def _paint_shape(
         [shapes[i] for i in order], closed=False, facecolors=inside[order], edgecolors=outline[order],
         antialiaseds=antialiased[order], capstyle="round", zorder=zorder,
     )  # fmt: skip
-    drawn.set_linewidth(thickness[order])  # afterwards: it is gone through once then, not twice
+    drawn.set_linewidth(thickness[order].tolist())  # afterwards: it is gone through once then, not twice
     axes.add_collection(drawn, autolim=False)
 
 

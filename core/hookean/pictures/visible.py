@@ -164,7 +164,7 @@ class _Meshes:
     def shape(self, x: Floats, pairs: Ints) -> Shape:
         """Everything with the particles at `x`; what rides on none stays."""
         faces, edged, strokes = [np.zeros((0, 4, 3))], [np.zeros(0, bool)], []
-        joined = np.unique(np.sort(pairs, axis=1) @ [len(x), 1])
+        joined = np.unique(np.sort(pairs, axis=1) @ np.array([len(x), 1]))
         for item in self.items:
             if item["kind"] == "mesh":
                 rows, corners = self._riders(item["vertices"]), np.asarray(item["faces"])

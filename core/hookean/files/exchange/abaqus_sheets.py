@@ -53,7 +53,7 @@ class SheetPart:
 
     def lines(self) -> list[str]:
         """Sections, and the directions of the warp where they count."""
-        lines = []
+        lines = list[str]()
         for number, piece in enumerate(self.pieces, start=1):
             sheet, turned = piece.sheet, ""
             thickness = sheet.thickness or 1.0

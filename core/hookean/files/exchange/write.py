@@ -33,7 +33,8 @@ def exchange(result: Result, target: Path, system: System | None = None) -> list
 
     check_target(target)
     ending = ending_of(target)
-    structure = Structure.of(result, system)
+    # beams and shells are without stress where their scene starts, which a system of a load case has moved to the form
+    structure = Structure.of(result, None if ending == ".inp" else system)
     import_module(f"hookean.files.exchange.{EXCHANGED[ending]}").write(structure, target)
     said = [f"A {ending} file stores the shape, its lines and results, not the model; save the scene, too."]
     if ending == ".inp":
