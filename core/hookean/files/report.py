@@ -154,7 +154,10 @@ def _loads(result: Result, title: str) -> Iterator[str]:
     rows.append(["together", "", "", _vector(found["resultant"].sum(axis=0)), ""])
     if len(result.rotations["particles"]):
         heads.append(f"moment about the centre x, y, z [{units.of('force length')}]")
-        for row, moment in zip(rows, [*map(_vector, found["moment"]), ""], strict=True):
+        reach = float(np.ptp(result.particles, axis=0).max(initial=0.0))
+        least = 1e-9 * reach * np.linalg.norm(found["resultant"], axis=1)[:, None]  # what is rounding of the forces
+        moments = np.where(np.abs(found["moment"]) < least, 0.0, found["moment"])
+        for row, moment in zip(rows, [*map(_vector, moments), ""], strict=True):
             row.append(moment)
     yield _table(heads, rows)
 
@@ -312,9 +315,9 @@ def _table(heads: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
 
 
 def _cell(value: Any) -> str:
-    return f"{value:.5g}" if isinstance(value, float) else str(value)
+    return f"{value + 0.0:.5g}" if isinstance(value, float) else str(value)  # no -0
 
 
 def _vector(values: Any) -> str:
     size = float(np.abs(np.asarray(values)).max(initial=0.0))
-    return ", ".join(f"{0.0 if abs(v) < 1e-9 * size else v:.5g}" for v in np.asarray(values).tolist())
+    return ", ".join(f"{0.0 if abs(v) <= 1e-9 * size else v:.5g}" for v in np.asarray(values).tolist())
