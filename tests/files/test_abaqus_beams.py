@@ -12,6 +12,7 @@ import pytest
 
 import hookean
 from hookean import Scene
+from hookean.files.exchange.write import exchange
 
 TUBE = {"E": 200.0, "G": 80.0, "A": 1.0, "Iy": 0.08, "Iz": 0.02, "J": 0.05}
 Spec = dict[str, Any]
@@ -135,6 +136,23 @@ def test_eccentric_ends_are_linked_and_shear_and_hinges_written(tmp_path: Path) 
     assert read.cells[1].data.tolist() == [[0, 1], [1, 2], [1, 5]]
     assert block(text, "MPC") == [["BEAM", "6", "4"]] and block(text, "RELEASE") == [["4", "S2", "ALLM"]]
     assert [float(v) for v in block(text, "TRANSVERSE SHEAR STIFFNESS")[0]] == pytest.approx([20.0, 40.0])  # n2: z
+
+
+def test_a_load_case_has_the_points_without_stress(tmp_path: Path) -> None:
+    """Where the beams start, also of a system that counts displacements from the form; as the result alone gives it."""
+    spec = frame()
+    spec["forces"][3]["name"] = "push"
+    spec["forces"].append({"kind": "unary", "particles": [1], "vector": [0, 0, -0.1]})  # acts on the form, too
+    cases = hookean.load_cases(Scene.read({**spec, "load_cases": {"push": {"forces": ["push"]}}}))
+    case = cases.cases["push"]
+    system, state = cases.frozen.system(case.result.scene)
+    system.x = state.x
+    exchange(case.result, tmp_path / "one.inp", system)
+    case.result.save(tmp_path / "two.inp")
+    assert (tmp_path / "one.inp").read_bytes() == (tmp_path / "two.inp").read_bytes()
+    start = np.array(spec["particles"])
+    np.testing.assert_allclose(meshio.read(tmp_path / "one.inp").points, start, atol=1e-15)
+    assert np.abs(cases.frozen.particles - start).max() > 1e-3
 
 
 def test_what_a_file_of_beams_cannot_hold_is_named(tmp_path: Path) -> None:
