@@ -20,7 +20,7 @@ GRID = [[x, y, 0.1 * x * (2 - y)] for y in range(3) for x in range(3)]
 FACES = [[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8], [4, 8, 7]]
 ORTHOTROPIC = {"warp_stiffness": 500, "weft_stiffness": 300, "shear_stiffness": 40, "poisson": 0.2, "warp": [1, 0.2, 0]}
 STEEL = {"E": 210.0, "poisson": 0.3, "density": 7.85, "expansion": 12e-6}
-KINDS = {"M3D3": "triangle", "SPRING1": "vertex"}  # meshio has these cells, not these names of them
+KINDS = {"SPRING1": "vertex"}  # meshio has this cell, not this name of it
 
 
 def roof(cloth: Spec, **more: Any) -> Spec:
@@ -129,6 +129,22 @@ def test_what_the_file_holds_is_in_equilibrium(cloth: Spec, tmp_path: Path) -> N
     ]
 
 
+def cloth_edges(found: Any) -> list[tuple[int, int]]:
+    """The edges of each triangle of a file."""
+    triangles = np.concatenate([part.data for part in found.cells if part.type == "triangle"]).tolist()
+    return [(row[i], row[i - 1]) for row in triangles for i in range(3)]
+
+
+def test_cloth_without_elastic_supports_is_read_by_any_meshio(tmp_path: Path) -> None:
+    """With the cells that it knows for the names of elements."""
+    spec = roof(ORTHOTROPIC)
+    spec["forces"] = [force for force in spec["forces"] if force["kind"] != "support"]
+    result, _ = saved(spec, tmp_path / "roof.inp")
+    found = meshio.read(tmp_path / "roof.inp")
+    np.testing.assert_allclose(found.points, result.particles, rtol=1e-15, atol=1e-15)
+    assert [(part.type, len(part.data)) for part in found.cells] == [("line", 3), ("triangle", 12), ("triangle", 2)]
+
+
 def test_elements_sets_materials_and_sections_are_those_of_the_scene(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -147,8 +163,13 @@ def test_elements_sets_materials_and_sections_are_those_of_the_scene(
     whole = {tuple(sorted(row)) for row in found.cells[1].data.tolist()}
     assert whole == {tuple(sorted(f[i] for i in range(4) if i != j)) for f in FACES[:3] for j in range(4)}
     sections = {has["ELSET"]: (has["MATERIAL"], rows) for k, has, rows in blocks(path) if k.endswith(" SECTION")}
-    assert [rows for name, (_, rows) in sections.items() if name.startswith("SHEET")] == [[["0.5"]], [["1.0"]]]
-    assert only(path, "ELASTIC", TYPE="LAMINA") == [["500.0", "300.0", "0.2", "40.0", "40.0", "40.0"]]
+    half, thin = (float(rows[0][0]) for name, (_, rows) in sections.items() if name.startswith("SHEET"))
+    edge = np.mean([np.linalg.norm(np.subtract(*found.points[[a, b]])) for a, b in cloth_edges(found)])
+    assert thin == pytest.approx(1e-3 * edge, rel=1e-12) and half == pytest.approx(0.5 * thin, rel=1e-12)
+    (lamina,) = only(path, "ELASTIC", TYPE="LAMINA")
+    warp, weft, poisson, *shear = (float(value) for value in lamina)
+    assert [thin * warp, thin * weft, poisson] == pytest.approx([500, 300, 0.2], rel=1e-12)
+    assert [thin * value for value in shear] == pytest.approx([40, 40, 40], rel=1e-12)
     steel = next(name for name, (material, _) in sections.items() if material == "MILD_STEEL")
     assert members(path, steel) == members(path, "BAR") and sections[steel][1] == [["0.02"]]
     text = path.read_text()
@@ -197,7 +218,7 @@ def test_bending_that_is_of_no_plate_is_named(tmp_path: Path) -> None:
         f"bending: not in the file, which has {has}.",
         "cloth: the file does not hold its wrinkles.",
     ]
-    assert "TYPE=M3D3" in (tmp_path / "roof.inp").read_text()
+    assert "TYPE=S3" in (tmp_path / "roof.inp").read_text()
 
 
 def test_no_field_is_longer_than_twenty_characters(tmp_path: Path) -> None:

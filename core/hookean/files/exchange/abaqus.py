@@ -26,7 +26,7 @@ SETS = 2_000  # different sections and stresses in a file
 def write(structure: Structure, target: Path) -> None:
     """Write the lines of a structure with an axial stiffness: an element set for each force and for each section in it,
     of area A and modulus EA / A (area 1 where no section is known), its tension as initial stress; membranes as
-    elements M3D3, and as S3 and S4 with a shell on their mesh; supports, elastic ones as springs to the ground, and a
+    elements S3, thin where they have no shell, else with S4; supports, elastic ones as springs to the ground, and a
     step of large displacements with the loads on its particles.
 
     Beams are elements B31 of general sections with their axes, hinges as releases, and rigid links where their ends are

@@ -1,4 +1,4 @@
-"""Membranes and shells in Abaqus input files: elements M3D3, and S3 and S4 of plates, with their stress."""
+"""Membranes and shells in Abaqus input files: elements S3, and S4 of plates, with their stress."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ Ints = NDArray[np.int64]
 
 ALMOST = float(np.cos(np.radians(0.1)))  # nearer to x than by this, the normal leaves the first axis to z
 ROUNDING = 1e-12  # strain that is none
+THIN = 1e-3  # thickness, in mean edges, of cloth that has none
 
 
 @dataclass(frozen=True, eq=False)
@@ -32,8 +33,10 @@ class Piece:
 
 
 class SheetPart:
-    """The membranes of a file at its points. Cloth alone is of triangles M3D3, in which a quad is the mean of its two
-    cuts: four triangles of half the thickness. A membrane with a shell is of S3 and S4, one for each face."""
+    """The membranes of a file at its points, as S3 and S4, for which programs other than Abaqus have a cell, too. Cloth
+    alone is of triangles, in which a quad is the mean of its two cuts: four triangles of half the thickness. Where it
+    has no thickness it is so thin that it resists bending by 1e-7 of what it resists stretching. A membrane with a
+    shell has one element for each face."""
 
     def __init__(
         self, sheets: Sequence[Sheet], names: Sequence[str], points: Floats, materials: Materials, first: int
@@ -56,7 +59,7 @@ class SheetPart:
         lines = list[str]()
         for number, piece in enumerate(self.pieces, start=1):
             sheet, turned = piece.sheet, ""
-            thickness = sheet.thickness or 1.0
+            thickness = self._thickness(sheet)
             warp, weft, shear = (stiffness / thickness for stiffness in sheet.stiffness[:3])
             poisson = sheet.stiffness[3]
             numbers: tuple[float, ...] = (warp, poisson)
@@ -64,9 +67,15 @@ class SheetPart:
                 lines += self._directions(number, piece)
                 numbers, turned = (warp, weft, poisson, shear, shear, shear), f", ORIENTATION=WARP_{number}"
             material = self.materials.elastic(sheet.material, numbers)
-            kind, part = "SHELL" if sheet.bends else "MEMBRANE", f"SHEET_SECTION_{number}"
-            lines += [f"*{kind} SECTION, ELSET={part}, MATERIAL={material}{turned}", row([thickness * piece.share])]
+            part = f"SHEET_SECTION_{number}"
+            lines += [f"*SHELL SECTION, ELSET={part}, MATERIAL={material}{turned}", row([thickness * piece.share])]
         return lines
+
+    def _thickness(self, sheet: Sheet) -> float:
+        if sheet.thickness is not None or not len(sheet.corners):
+            return sheet.thickness or 1.0
+        edges = self.points[sheet.corners] - self.points[np.roll(sheet.corners, 1, axis=1)]
+        return THIN * float(np.linalg.norm(edges, axis=2).mean()) or 1.0
 
     def _directions(self, number: int, piece: Piece) -> Iterator[str]:
         """Of each element, the direction of the warp and the one across it."""
@@ -88,7 +97,7 @@ class SheetPart:
                 stress = _turned(stress, sheet.axes(self.points))
             if sheet.bends:
                 stress = _means(stress, sheet)
-            rows = (stress[piece.rows] / (sheet.thickness or 1.0)).tolist()
+            rows = (stress[piece.rows] / self._thickness(sheet)).tolist()
             yield from (f"{piece.first + i}, {row(each)}" for i, each in enumerate(rows))
 
 
@@ -101,7 +110,7 @@ def _cloth(sheet: Sheet) -> Blocks:
     for share in np.unique(sheet.share).tolist():
         rows = np.flatnonzero((sheet.share == share) & real)
         if len(rows):
-            yield "M3D3", share, rows, sheet.corners[rows]
+            yield "S3", share, rows, sheet.corners[rows]
 
 
 def _plates(sheet: Sheet) -> Blocks:
