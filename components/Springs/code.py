@@ -7,12 +7,13 @@ length: beyond it the tension stays, and the rest length follows at the end of t
 length of 0 makes a force-density spring. Source: the chapter, 9.4, figures 9.11 to 9.13.
 
 Cables and bars: give the stiffness in one way, as k, as EA (k = EA / L0 of each element), or as a
-material and a section (EA = E x area). With `tension_only` a spring is slack below its rest length,
-as a cable; with `compression_only` it has no force above it, as a strut. Give the prestress in one
-way, too: as the `force` that the spring has at its start length, the `strain` (l - L0) / L0 there,
-or the rest length. A rest factor multiplies the rest length that follows: with the default, 1, the
-force is as given. A temperature, of a material with thermal expansion, lengthens the rest length by
-1 + expansion x temperature, on top of the prestress.
+material and a section (EA = E x area); a section beside k or EA gives the area for the stress. With
+`tension_only` a spring is slack below its rest length, as a cable; with `compression_only` it has
+no force above it, as a strut. Give the prestress in one way, too: as the `force` that the spring
+has at its start length, the `strain` (l - L0) / L0 there, or the rest length. A rest factor
+multiplies the rest length that follows: with the default, 1, the force is as given. A temperature,
+of a material with thermal expansion, lengthens the rest length by 1 + expansion x temperature, on
+top of the prestress.
 
 E = k (l - L0)^2/2
 """

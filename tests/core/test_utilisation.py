@@ -10,6 +10,7 @@ import pytest
 import hookean
 from hookean import InputError, Scene, relax
 from hookean.files import tables
+from hookean.files.report import report
 from hookean.system.system import compile
 
 ROPE = {"shape": "rope", "diameter": 0.02, "fill_factor": 0.75}
@@ -56,11 +57,68 @@ def test_a_material_gives_the_frozen_cable_its_stiffness() -> None:
     np.testing.assert_allclose(force.stiffness * force.rest_length, 150e6 * BREAKS / 1570e3, rtol=1e-14)
 
 
+AREA = BREAKS / 1570e3
+
+
+@pytest.mark.parametrize(
+    "stage",
+    [
+        {"material": "spiral strand 1570", "section": "rope"},
+        {"axial_stiffness": 35e3, "section": "rope", "strength": 400.0},
+        {"axial_stiffness": 35e3, "section": "rope"},
+    ],
+)
+def test_a_frozen_cable_of_a_section_has_its_stress(stage: Any) -> None:
+    """T / A, of each case and as an extreme; without a strength there is no utilisation, and the report says so."""
+    scene = Scene.read(cable(**stage))
+    found = hookean.load_cases(scene)
+    own = found.cases["snow"].result.force("cable")
+    np.testing.assert_allclose(own["stress"], own["force"] / AREA, rtol=1e-14)
+    np.testing.assert_array_equal(found.envelope.forces[0]["columns"]["stress"].largest, own["stress"])
+    known = "utilisation" in own
+    assert known is (len(stage) == 3 or "material" in stage)
+    said = "<p>cable has no utilisation: give its strength.</p>"
+    assert (said in report(scene, pictures=False, cases=found)) is not known
+
+
+def test_springs_keep_their_section_when_they_are_frozen() -> None:
+    """Bars of a material and a section, and of EA with a section; the report names what has none of them."""
+    spec = cable()
+    bars = {"kind": "springs", "particles": [[0, 1], [1, 2]], "force": 1.0, "section": "rope"}
+    spec["forces"] += [{**bars, "name": "steel", "material": "spiral strand 1570"},
+                       {**bars, "name": "bar", "axial_stiffness": 5e3},
+                       {"kind": "springs", "name": "tie", "particles": [[0, 1]], "axial_stiffness": 1.0}]  # fmt: skip
+    spec["stages"]["freeze"]["cable"] = {"axial_stiffness": 1e3}
+    scene = Scene.read(spec)
+    found = hookean.load_cases(scene)
+    for name in ("steel", "bar"):
+        own = found.cases["snow"].result.force(name)
+        np.testing.assert_allclose(own["stress"], own["force"] / AREA, rtol=1e-14)
+        assert ("utilisation" in own) is (name == "steel")
+    text = report(scene, pictures=False, cases=found)
+    for name in ("cable", "tie"):
+        assert f"<p>{name} has no stress and no utilisation: give its section and strength.</p>" in text
+    assert "<p>bar has no utilisation: give its strength.</p>" in text and "<p>steel has no" not in text
+
+
+def test_a_sliding_cable_of_an_area_has_its_stress() -> None:
+    """One with EA and a section beside it; a section that does not exist is refused."""
+    spec = cable()
+    spec["forces"][0] = {"kind": "sliding_cable", "name": "rope", "particles": [[0, 1], [1, 2]],
+                         "axial_stiffness": 1e3, "force": 30.0, "section": "rope"}  # fmt: skip
+    spec |= {"load_cases": {}, "stages": None, "settings": {"tolerance": 1e-12}}
+    own = relax(Scene.read(spec)).force("rope")
+    np.testing.assert_allclose(own["stress"], own["force"] / AREA, rtol=1e-14)
+    spec["forces"][0]["section"] = "bar"
+    with pytest.raises(InputError, match="section 'bar' does not exist"):
+        relax(Scene.read(spec))
+
+
 @pytest.mark.parametrize(
     ("stage", "said"),
     [
         ({"material": "S355"}, "material given without a section"),
-        ({"section": "rope"}, "section given without a material"),
+        ({"axial_stiffness": 1.0, "section": "bar"}, "section 'bar' does not exist"),
         ({"material": "S355", "section": "rope", "axial_stiffness": 1.0}, "axial_stiffness and material given"),
         ({"material": "S35", "section": "rope"}, 'material "S35" does not exist; did you mean S355'),
         ({"material": "S355", "section": "bar"}, "section 'bar' does not exist"),

@@ -12,6 +12,7 @@ import pytest
 
 import hookean
 from hookean import Scene
+from hookean.files.exchange.write import exchange
 
 TUBE = {"E": 200.0, "G": 80.0, "A": 1.0, "Iy": 0.08, "Iz": 0.02, "J": 0.05}
 Spec = dict[str, Any]
@@ -137,16 +138,34 @@ def test_eccentric_ends_are_linked_and_shear_and_hinges_written(tmp_path: Path) 
     assert [float(v) for v in block(text, "TRANSVERSE SHEAR STIFFNESS")[0]] == pytest.approx([20.0, 40.0])  # n2: z
 
 
+def test_a_load_case_has_the_points_without_stress(tmp_path: Path) -> None:
+    """Where the beams start, also of a system that counts displacements from the form; as the result alone gives it."""
+    spec = frame()
+    spec["forces"][3]["name"] = "push"
+    spec["forces"].append({"kind": "unary", "particles": [1], "vector": [0, 0, -0.1]})  # acts on the form, too
+    cases = hookean.load_cases(Scene.read({**spec, "load_cases": {"push": {"forces": ["push"]}}}))
+    case = cases.cases["push"]
+    system, state = cases.frozen.system(case.result.scene)
+    system.x = state.x
+    exchange(case.result, tmp_path / "one.inp", system)
+    case.result.save(tmp_path / "two.inp")
+    assert (tmp_path / "one.inp").read_bytes() == (tmp_path / "two.inp").read_bytes()
+    start = np.array(spec["particles"])
+    np.testing.assert_allclose(meshio.read(tmp_path / "one.inp").points, start, atol=1e-15)
+    assert np.abs(cases.frozen.particles - start).max() > 1e-3
+
+
 def test_what_a_file_of_beams_cannot_hold_is_named(tmp_path: Path) -> None:
-    """Springs that go slack, supports that give way, cloth, and beams that are bent in."""
+    """Springs with cutoffs at other lengths, films, and beams that are bent in."""
     spec = frame(curvature="straight")
-    spec["forces"][2]["tension_only"] = True
+    spec["forces"][2]["upper_cutoff"] = 50.0
     spec["meshes"] = {"m": {"vertices": spec["particles"][:3], "faces": [[0, 1, 2]]}}
-    spec["forces"].append({"kind": "membrane", "name": "cloth", "mesh": "m", "warp_stiffness": 1.0})
+    spec["forces"].append({"kind": "soapfilm", "name": "film", "mesh": "m", "tension": 1e-9})
     spec["forces"].append({"kind": "support", "name": "soil", "particles": [2], "stiffness": [1, 1, 1]})
     found = hookean.relax(Scene.read(spec))
     assert found.save(tmp_path / "frame.inp")[1:] == [
-        "cloth, soil: not in the file, which has beams and lines with an axial stiffness.",
-        "stay: trusses that do not go slack; add *NO COMPRESSION or *NO TENSION.",
+        "film: not in the file, which has beams, membranes, lines with an axial stiffness, and elastic supports.",
+        "stay: trusses without their cutoffs.",
         "purlin: the file does not hold the bending of rods that are straight without stress.",
     ]
+    assert block((tmp_path / "frame.inp").read_text(), "SPRING") == [["1"], ["1.0"]]

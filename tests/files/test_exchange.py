@@ -190,7 +190,8 @@ def test_compas_reads_the_graph(result: Result, tmp_path: Path) -> None:
 def test_the_same_result_gives_the_same_bytes(result: Result, tmp_path: Path, ending: str) -> None:
     said = result.save(tmp_path / f"roof.{ending}")
     assert said[0] == f"A .{ending} file stores the shape, its lines and results, not the model; save the scene, too."
-    left = "1 strut: not in the file, which has beams and lines with an axial stiffness."
+    has = "beams, membranes, lines with an axial stiffness, and elastic supports."
+    left = f"1 strut: not in the file, which has {has}"
     assert said[1:] == ([left] if ending == "inp" else [])
     before = (tmp_path / f"roof.{ending}").read_bytes()
     result.save(tmp_path / f"roof.{ending}")
@@ -217,7 +218,8 @@ def test_beams_and_springs_by_their_axial_stiffness_are_written(tmp_path: Path) 
     assert len(found.save(tmp_path / "frame.inp")) == 1
     lines = (tmp_path / "frame.inp").read_text(encoding="utf-8").splitlines()
     moduli = [float(lines[i + 1].split(",")[0]) for i, line in enumerate(lines) if line == "*ELASTIC"]
-    assert sorted(moduli) == pytest.approx([1e3, 21e3], rel=1e-12)
+    areas = [float(lines[i + 1]) for i, line in enumerate(lines) if line.startswith("*SOLID SECTION")]
+    assert sorted(e * a for e, a in zip(moduli, areas, strict=True)) == pytest.approx([1e3, 21e3], rel=1e-12)
     for ending in ("dxf", "vtu", "compas.json"):
         assert len(found.save(tmp_path / f"frame.{ending}")) == 1
     ifcopenshell = pytest.importorskip("ifcopenshell")
@@ -367,7 +369,7 @@ def test_what_a_file_cannot_hold_is_one_sentence(tmp_path: Path, monkeypatch: py
     result = hookean.relax(feet)
     with pytest.raises(InputError, match="units ft and N given"):
         result.save(tmp_path / "a.ifc")
-    with pytest.raises(InputError, match="neither beams nor springs with a rest length to write; freeze"):
+    with pytest.raises(InputError, match="neither beams nor membranes nor springs with a rest length to write; freeze"):
         result.save(tmp_path / "a.inp")
     for package, ending, extra in (("meshio", "vtu", "exchange"), ("ifcopenshell", "ifc", "ifc")):
         monkeypatch.setitem(__import__("sys").modules, package, None)

@@ -162,3 +162,22 @@ def test_a_report_has_what_floors_carry() -> None:
         "1 reactions: largest 1.5 N, together (0, 0, 1.5) N",
         "1 contacts with floors: largest 2.5 N, together (0, 0, 2.5) N",
     ]
+
+
+def test_a_report_has_no_negative_zero_and_no_moment_that_is_rounding() -> None:
+    """A frame under a weight that is symmetric: its moment about its centre is zero, and zeros have no sign."""
+    tube = {"E": 1e6, "G": 4e5, "A": 0.01, "Iy": 1e-4, "Iz": 1e-4, "J": 1e-4}
+    scene = Scene.read({
+        "particles": [[0.1, 0, 0], [0.1, 0, 3.1], [4.2, 0, 3.1], [4.2, 0, 0]],
+        "forces": [
+            {"kind": "beam", "name": "frame", "particles": [[0, 1], [1, 2], [2, 3]], **tube},
+            {"kind": "unary", "name": "snow", "particles": [1, 2], "vector": [0, 0, -0.7]},
+        ],
+        "anchors": [{"particles": [0, 3], "rotations": "xyz"}, {"particles": [1, 2], "axes": "y"}],
+    })  # fmt: skip
+    text = report(scene, pictures=False)
+    found = hookean.relax(scene)
+    assert np.signbit(np.asarray(found.reactions["force"])[found.reactions["force"] == 0.0]).any()
+    assert ">-0<" not in text and "-0, " not in text and ", -0<" not in text
+    load = next(row for row in Tables(text).rows["Form"] if row[0] == "snow")
+    assert load[5] == "0, 0, 0"

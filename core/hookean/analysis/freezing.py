@@ -18,6 +18,7 @@ from hookean.forces.membrane import Membrane
 from hookean.forces.sliding_cable import SlidingCable, taut
 from hookean.forces.soapfilm import SoapFilm
 from hookean.forces.springs import Springs
+from hookean.linear.pattern import Pattern
 from hookean.running.result import Result, Status, gather
 from hookean.running.run import relax_state
 from hookean.running.utilisation import breaking_force
@@ -211,9 +212,14 @@ def sharpen(system: System, state: State) -> None:
         return
     rest = AtRest.checked(system, state, True, "")
     unknowns = Unknowns.of(system, state, rest.free)
+    plain = unknowns.sparse and system.films is None and not len(system.slots)
+    pattern = Pattern(system, rest.free) if plain else None  # which is worked out once for all steps
     left = system.evaluate(state)[0] * rest.free
     for _ in range(STEPS):
-        found = factor(against_turns(unknowns.tangent(system, state), unknowns.dofs, system.slots.count)[0])
+        if pattern is not None:
+            found = pattern.factors.factor(pattern.tangent(system, state))
+        else:
+            found = factor(against_turns(unknowns.tangent(system, state), unknowns.dofs, system.slots.count)[0])
         if found is None or not left.any():
             return
         before = state.x
@@ -242,8 +248,11 @@ def _filled(wanted: ElasticLine, force: Force, places: Places, pointer: str) -> 
                 axial_stiffness=elastic.axial_stiffness(wanted, places),
                 strength=breaking_force(wanted, places),
             )
-        elif wanted.strength is None and isinstance(force, Springs):
-            wanted = wanted.replaced(strength=breaking_force(force, places))
+        elif isinstance(force, Springs):
+            section = wanted.section or force.section
+            cut = force.replaced(section=section)
+            strength = breaking_force(cut, places) if wanted.strength is None else wanted.strength
+            wanted = wanted.replaced(section=section, strength=strength)
     except InputError as error:
         raise InputError(pointer, error.sentence) from None
     return wanted
@@ -293,6 +302,7 @@ def frozen_springs(line: Line) -> Force:
         tension_only=own.tension_only,
         compression_only=own.compression_only,
         yield_extension=p[:, 6],
+        section=line.wanted.section,
         strength=line.wanted.strength,
     )
 
@@ -309,6 +319,7 @@ def frozen_tension(line: Line) -> Force:
         stiffness=stiffness,
         rest_length=rest,
         lower_cutoff=lower,
+        section=line.wanted.section,
         strength=line.wanted.strength,
     )
 

@@ -24,6 +24,7 @@ Index = NDArray[np.int64]
 Row = list[float]
 Spot = tuple[float, float]
 
+SYMMETRIC = {"permc_spec": "MMD_AT_PLUS_A", "diag_pivot_thresh": 0.001, "options": {"SymmetricMode": True}}
 STEPS = 20  # local and global
 ROUNDS = 50  # of Newton's method
 STILL = 1e-12  # of the size of the piece: a step that moves less is the last one
@@ -75,6 +76,8 @@ def flatten(mesh: Any) -> Flat:
 def oriented(faces: Index) -> Index:
     """Faces (m, 4) that all run the same way round as the first one of their part; InputError where they cannot."""
     faces = faces.copy()
+    if len(np.unique(keys := _keys(directed(faces)))) == len(keys):
+        return faces  # no two run along a side in the same direction
     sides: dict[tuple[int, int], list[int]] = {}
     for number, face in enumerate(faces.tolist()):
         for a, b in _sides(face):
@@ -103,13 +106,14 @@ def oriented(faces: Index) -> Index:
 def outline(faces: Index) -> Index:
     """The vertices (k,) around a piece of faces (m, 4) that run one way round; InputError unless it has one
     boundary."""
-    after: dict[int, int] = {}
-    directed = {side for face in faces.tolist() for side in _sides(face)}
-    for a, b in sorted(directed):
-        if (b, a) not in directed:
-            if a in after:
-                raise InputError("mesh/faces", f"the boundary touches itself at vertex {a}; cut the piece there")
-            after[a] = b
+    sides = directed(faces)
+    _, first = np.unique(keys := _keys(sides), return_index=True)
+    sides = sides[first]  # by their vertices
+    rim = sides[~np.isin(_keys(sides[:, ::-1], sides), keys)]
+    if (twice := rim[1:, 0] == rim[:-1, 0]).any():
+        touched = int(rim[1:, 0][twice][0])
+        raise InputError("mesh/faces", f"the boundary touches itself at vertex {touched}; cut the piece there")
+    after = dict(rim.tolist())
     if not after:
         raise InputError("mesh/faces", "the piece is closed; cut it open")
     loop = [min(after)]
@@ -118,6 +122,18 @@ def outline(faces: Index) -> Index:
     if len(loop) != len(after):
         raise InputError("mesh/faces", "the piece has several boundaries; cut it from one to the other")
     return np.array(loop)
+
+
+def directed(faces: Index) -> Index:
+    """The sides (k, 2) of faces (m, 4), each in the direction in which its face runs."""
+    sides = np.stack([faces, np.roll(faces, -1, axis=1)], axis=2).reshape(-1, 2)
+    return np.asarray(sides[sides[:, 0] != sides[:, 1]])
+
+
+def _keys(sides: Index, of: Index | None = None) -> Index:
+    """A number for each pair of vertices, in their order; of the same vertices as the sides `of`."""
+    size = int((sides if of is None else of).max(initial=0)) + 1
+    return np.asarray(sides[:, 0] * size + sides[:, 1])
 
 
 def _three(face: Any) -> bool:
@@ -134,7 +150,7 @@ def _check_disc(vertices: Array, faces: Index) -> None:
     if not len(faces):
         raise InputError("mesh/faces", "the piece has no faces")
     outline(faces)
-    edges = {(min(s), max(s)) for face in faces.tolist() for s in _sides(face)}
+    edges = np.unique(_keys(np.sort(directed(faces), axis=1)))
     used = len(np.unique(faces))
     if used != len(vertices):
         raise InputError("mesh/vertices", f"{len(vertices) - used} vertices belong to no face; remove them")
@@ -159,28 +175,32 @@ def _local(vertices: Array, triangles: Index) -> Array:
 
 def _unfolded(vertices: Array, triangles: Index) -> Array:
     """Each triangle turned into the plane of the one before it, breadth first; a vertex lies where it comes first."""
-    sides: dict[tuple[int, int], list[int]] = {}
-    for number, triangle in enumerate(triangles.tolist()):
-        for i in range(3):
-            a, b = triangle[i], triangle[(i + 1) % 3]
-            sides.setdefault((min(a, b), max(a, b)), []).append(number)
+    across = _across(triangles).tolist()
     corners, rows = vertices.tolist(), triangles.tolist()  # single numbers are many times quicker in lists
     a, b, _ = rows[0]
     points = {a: (0.0, 0.0), b: (dist(corners[a], corners[b]), 0.0)}
-    queue, seen = deque([0]), {0}
+    queue, seen = deque([0]), [True] + [False] * (len(rows) - 1)
     while queue:
-        triangle = rows[queue.popleft()]
-        for i in range(3):
-            a, b, c = (triangle[(i + j) % 3] for j in range(3))
-            if a in points and b in points and c not in points:
+        number = queue.popleft()
+        i, j, k = rows[number]
+        for a, b, c in ((i, j, k), (j, k, i), (k, i, j)):
+            if c not in points and a in points and b in points:
                 points[c] = _third(corners[a], corners[b], corners[c], points[a], points[b])
-        for i in range(3):
-            a, b = triangle[i], triangle[(i + 1) % 3]
-            for near in sides[min(a, b), max(a, b)]:
-                if near not in seen:
-                    seen.add(near)
-                    queue.append(near)
+        for near in across[number]:
+            if near >= 0 and not seen[near]:
+                seen[near] = True
+                queue.append(near)
     return np.array([points[i] for i in range(len(corners))])
+
+
+def _across(triangles: Index) -> Index:
+    """The triangle (m, 3) across each side of triangles that run one way round; -1 for none."""
+    sides = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2)
+    own, back = _keys(sides), _keys(sides[:, ::-1])
+    order = np.argsort(own)
+    place = np.minimum(np.searchsorted(own, back, sorter=order), len(own) - 1)
+    found = order[place]
+    return np.where(own[found] == back, found // 3, -1).reshape(-1, 3)
 
 
 def _third(a: Row, b: Row, c: Row, start: Spot, end: Spot) -> Spot:
@@ -238,7 +258,10 @@ class _Energy:
         places = np.concatenate([row, column, row, column]), np.concatenate([column, row, row, column])
         values = np.concatenate([-value, -value, value, value])
         self.laplacian = sparse.csc_matrix((values, places), shape=(count, count))
-        self.factor = splu(self.laplacian[1:, 1:].tocsc())
+        self.factor = splu(self.laplacian[1:, 1:].tocsc(), **SYMMETRIC)
+        self.twice = 2.0 * sparse.kron(self.laplacian, sparse.identity(2), format="csc")
+        index = (2 * triangles[:, :, None] + np.arange(2)).reshape(len(triangles), 6)
+        self.places = np.repeat(index, 6, axis=1).ravel(), np.tile(index, (1, 6)).ravel()
         self.pull = self.cotangent[..., None] * self.sides  # of each side, in the axes of its triangle
 
     def _turns(self, points: Array) -> tuple[Array, Array, Array]:
@@ -286,18 +309,14 @@ class _Energy:
         corner -= normal
         flat = corner.reshape(len(corner), 6)
         blocks = -2.0 * flat[:, :, None] * flat[:, None, :] / size[:, None, None]
-        index = (2 * self.triangles[:, :, None] + np.arange(2)).reshape(len(corner), 6)
-        row = np.broadcast_to(index[:, :, None], blocks.shape).ravel()
-        column = np.broadcast_to(index[:, None, :], blocks.shape).ravel()
         total = 2 * self.count
-        matrix = sparse.coo_matrix((blocks.ravel(), (row, column)), shape=(total, total)).tocsc()
-        matrix = matrix + 2.0 * sparse.kron(self.laplacian, sparse.identity(2))
+        matrix = sparse.coo_matrix((blocks.ravel(), self.places), shape=(total, total)).tocsc() + self.twice
         off = np.abs(points - points[0])
         far, axis = np.unravel_index(int(np.argmax(off)), off.shape)
         free = np.setdiff1d(np.arange(total), [0, 1, 2 * far + 1 - axis])
         step = np.zeros(total)
         try:
-            step[free] = splu(matrix.tocsc()[free][:, free].tocsc()).solve(-slope.ravel()[free])
+            step[free] = splu(matrix[free][:, free].tocsc(), **SYMMETRIC).solve(-slope.ravel()[free])
         except RuntimeError:  # singular
             return np.full((self.count, 2), np.nan)
         return step.reshape(-1, 2)

@@ -17,7 +17,7 @@ from hookean.forces import KINDS
 from hookean.pictures.picture import picture
 from hookean.running.result import Result
 from hookean.running.run import relax
-from hookean.running.utilisation import dimensions
+from hookean.running.utilisation import dimensions, missing
 from hookean.scene.scene import Scene
 from hookean.system.system import System, compile
 
@@ -76,7 +76,9 @@ def reported(
     parts = [f"<h1>{escape(title)}</h1>", *_scene(scene, form), *_form(scene, form, pictures)]
     found, results = list[str](), {"": form}
     if cases is not None:
-        parts += [*_cases(scene, cases), *_envelope(cases.envelope, form), *_reactions(cases.envelope, form)]
+        parts += [*_cases(scene, cases), *_envelope(cases.envelope, form)]
+        some = next(iter(cases.cases.values())).result
+        parts += [*_missing(cases.frozen.scene, some), *_reactions(cases.envelope, form)]
         for name, case in cases.cases.items():
             exceeded = None if limits is None else _exceeded_in(case, cases, limits)
             parts += _case(case, exceeded, pictures)
@@ -116,6 +118,8 @@ def _form(scene: Scene, form: Result, pictures: bool) -> Iterator[str]:
     yield from _loads(form, "Loads that act on the form")
     yield from _carried(form)
     yield _table(("force", "column", "smallest", "largest", "unit"), _ranges(form))
+    if not (scene.load_cases or scene.combinations):
+        yield from _missing(scene, form)
 
 
 def _ranges(result: Result) -> Iterator[tuple[Any, ...]]:
@@ -126,6 +130,13 @@ def _ranges(result: Result) -> Iterator[tuple[Any, ...]]:
             if sizes.size:
                 unit = result.units.of(dimension) or "-"
                 yield entry["name"] or entry["kind"], name, float(sizes.min()), float(sizes.max()), unit
+
+
+def _missing(scene: Scene, result: Result) -> Iterator[str]:
+    """A sentence on each force whose stress or utilisation is not known."""
+    for force, columns in zip(scene.forces, result.forces, strict=True):
+        if said := missing(force, columns):
+            yield f"<p>{escape(said)}</p>"
 
 
 def _loads(result: Result, title: str) -> Iterator[str]:
@@ -143,7 +154,10 @@ def _loads(result: Result, title: str) -> Iterator[str]:
     rows.append(["together", "", "", _vector(found["resultant"].sum(axis=0)), ""])
     if len(result.rotations["particles"]):
         heads.append(f"moment about the centre x, y, z [{units.of('force length')}]")
-        for row, moment in zip(rows, [*map(_vector, found["moment"]), ""], strict=True):
+        reach = float(np.ptp(result.particles, axis=0).max(initial=0.0))
+        least = 1e-9 * reach * np.linalg.norm(found["resultant"], axis=1)[:, None]  # what is rounding of the forces
+        moments = np.where(np.abs(found["moment"]) < least, 0.0, found["moment"])
+        for row, moment in zip(rows, [*map(_vector, moments), ""], strict=True):
             row.append(moment)
     yield _table(heads, rows)
 
@@ -301,9 +315,9 @@ def _table(heads: Sequence[str], rows: Iterable[Sequence[Any]]) -> str:
 
 
 def _cell(value: Any) -> str:
-    return f"{value:.5g}" if isinstance(value, float) else str(value)
+    return f"{value + 0.0:.5g}" if isinstance(value, float) else str(value)  # no -0
 
 
 def _vector(values: Any) -> str:
     size = float(np.abs(np.asarray(values)).max(initial=0.0))
-    return ", ".join(f"{0.0 if abs(v) < 1e-9 * size else v:.5g}" for v in np.asarray(values).tolist())
+    return ", ".join(f"{0.0 if abs(v) <= 1e-9 * size else v:.5g}" for v in np.asarray(values).tolist())

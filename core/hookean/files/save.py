@@ -20,7 +20,7 @@ ENDINGS = ".3dm, .json, .obj, .csv, .png, .dxf, .vtu, .inp, .ifc or .compas.json
 
 def save(result: Result | Simulation, path: str | os.PathLike[str]) -> list[str]:
     """Write a result to a file, or a Simulation to a .hookean file, which has its scene and its state:
-    .3dm and .obj with its shape, .json with everything, .csv with a row for each element
+    .3dm and .obj with its shape, .json with everything, .csv with a row for each element, contact with a floor
     and reaction, .png with a picture; for other programs .dxf, .vtu (ParaView), .inp (Abaqus), .ifc and .compas.json (a
     COMPAS Graph) with elements, forces, supports, loads, reactions. Returns sentences on what the file does not hold.
 

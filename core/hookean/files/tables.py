@@ -7,7 +7,7 @@ A limits file is TOML (or JSON). Limits of the whole model come first; `[force.N
     min_force = -5           # compression
     max_strain = 0.02        # of either sign
     max_displacement = 0.1   # of any particle from its start
-    max_reaction = 500
+    max_reaction = 500       # of a support, or of a floor on a particle
     max_utilisation = 0.5    # part of the strength of any element
     max_stress = 235e6       # of lines and beams of a section, of either sign
     max_moment = 20          # bending of beams about either axis
@@ -35,6 +35,7 @@ from pydantic import ValidationError
 from hookean.analysis.load_cases import slack_elements
 from hookean.errors import InputError
 from hookean.files import cells
+from hookean.forces.floor import Floor
 from hookean.running.result import Result
 from hookean.running.utilisation import NAME, STRESS, dimensions
 from hookean.system.system import System
@@ -68,12 +69,16 @@ NEEDED = {
 }
 """Limits of what not every element has, and what to do where none has it."""
 _SCOPES = ("force", "layer", "anchor")
+CARRIED = ("reaction", "contact")
+"""The kinds of rows of what supports and floors carry."""
+TOUCHING = 1e-12  # height above a floor, / coordinates, that is none
 
 
 @dataclass(eq=False)
 class Section:
-    """The elements of force `number` of the scene, or the reactions (-1): `particles` (m, arity), `columns` (m,) or
-    (m, 3) each with the dimension in `outputs`, and the item each element came from (`owner` -1: none)."""
+    """The elements of force `number` of the scene, or what supports or floors carry (-1): `particles` (m, arity),
+    `columns` (m,) or (m, 3) each with the dimension in `outputs`, and the item each element came from (`owner` -1:
+    none)."""
 
     number: int
     name: str
@@ -93,11 +98,12 @@ class Section:
     def internal(self) -> bool:
         """Whether its forces are those inside elements, with a sign."""
         force = self.columns.get("force")
-        return self.kind != "reaction" and force is not None and force.ndim == 1
+        return self.kind not in CARRIED and force is not None and force.ndim == 1
 
 
 def sections(system: System, result: Result, built: Built | None = None) -> list[Section]:
-    """One section for each force of the scene that has elements, and one of reactions."""
+    """One section for each force of the scene that has elements, one of what floors carry if anything touches one, and
+    the last one of reactions."""
     found: list[Section] = []
     for number, entry in enumerate(result.forces):
         if "particles" not in entry:
@@ -111,8 +117,26 @@ def sections(system: System, result: Result, built: Built | None = None) -> list
         name = str(entry["name"] or entry["kind"])
         kind = str(entry["kind"])
         found.append(Section(number, name, kind, particles, columns, dimensions(kind), items, owner, []))
+    if len(result.contacts["particles"]):
+        found.append(_contacts(system, result))
     found.append(_reactions(system, result, built))
     return found
+
+
+def _contacts(system: System, result: Result) -> Section:
+    """The forces of floors on particles, each by the names of the floors that it lies on."""
+    particles = np.asarray(result.contacts["particles"], dtype=np.int64)
+    force = np.asarray(result.contacts["force"], dtype=np.float64).reshape(-1, 3)
+    at, names = result.particles[particles], [list[str]() for _ in particles]
+    for floor in system.scene.forces:
+        if isinstance(floor, Floor):
+            height = (at - floor.point) @ (np.asarray(floor.normal) / np.linalg.norm(floor.normal))
+            size = np.abs(at).max(axis=1) + np.abs(floor.point).max()
+            for row in np.flatnonzero(height <= TOUCHING * size).tolist():
+                names[row].append(floor.name or floor.kind)
+    owner = np.full(len(particles), -1)
+    said = [", ".join(dict.fromkeys(each)) for each in names]
+    return Section(-1, "contacts", "contact", particles[:, None], {"force": force}, {"force": "force"}, (), owner, said)
 
 
 def _owners(system: System, number: int, particles: Ints, shape: Shape) -> Ints:
@@ -178,8 +202,8 @@ def _reactions(system: System, result: Result, built: Built | None) -> Section:
 
 
 def rows(parts: Sequence[Section], result: Result) -> list[Row]:
-    """A row for each element and each reaction; keys are the CSV's header, with units. Lengths and forces are in the
-    scene's units, x y z the middle of the relaxed element, `particles` those it joins."""
+    """A row for each element, contact with a floor and reaction; keys are the CSV's header, with units. Lengths and
+    forces are in the scene's units, x y z the middle of the relaxed element, `particles` those it joins."""
     return [row for part in parts for row in _rows(part, result)]
 
 
@@ -308,10 +332,11 @@ def _mask(part: Section, scope: str, key: str) -> NDArray[np.bool_]:
         good = [on_layer(item.layer, key) for item in part.items]
         return np.array([o >= 0 and good[o] for o in part.owner.tolist()], dtype=bool).reshape(count)
     if scope == "anchor":
-        return np.array([n == key for n in part.names] or [False] * count, dtype=bool).reshape(count)
+        supports = part.names if part.kind == "reaction" else []
+        return np.array([n == key for n in supports] or [False] * count, dtype=bool).reshape(count)
     # forces of one layer without a recipe are numbered: cables, cables/2
     base = re.sub(r"/\d+$", "", part.name)
-    return np.full(count, part.kind != "reaction" and key in (part.name, part.kind, base))
+    return np.full(count, part.kind not in CARRIED and key in (part.name, part.kind, base))
 
 
 def _there(parts: Sequence[Section], scope: str) -> str:
@@ -320,8 +345,8 @@ def _there(parts: Sequence[Section], scope: str) -> str:
     if scope == "layer":
         return listed(part.items[o].layer for part in parts for o in np.unique(part.owner) if o >= 0)
     if scope == "anchor":
-        return listed(name for part in parts for name in part.names if name)
-    return listed(name for part in parts if part.kind != "reaction" for name in (part.name, part.kind))
+        return listed(name for part in parts if part.kind == "reaction" for name in part.names if name)
+    return listed(name for part in parts if part.kind not in CARRIED for name in (part.name, part.kind))
 
 
 def _check(
@@ -379,7 +404,7 @@ def _values(part: Section, limit: str, moved: Floats) -> Floats | None:
         far: Floats = moved[part.particles].max(axis=1, initial=0.0)
         return far
     if limit == "max_reaction":
-        return np.linalg.norm(part.columns["force"], axis=1) if part.kind == "reaction" else None
+        return np.linalg.norm(part.columns["force"], axis=1) if part.kind in CARRIED else None
     if limit == "max_strain":
         return np.abs(part.columns["strain"]) if "strain" in part.columns else None
     if limit == "max_utilisation":
@@ -397,5 +422,5 @@ def _values(part: Section, limit: str, moved: Floats) -> Floats | None:
 def _spot(part: Section, row: int) -> str:
     item = part.item(row)
     called = f" of {item.label}" if item is not None else ""
-    thing = f"particle {part.particles[row, 0]}" if part.kind == "reaction" else f"element {row} of {part.name}"
+    thing = f"particle {part.particles[row, 0]}" if part.kind in CARRIED else f"element {row} of {part.name}"
     return thing + called

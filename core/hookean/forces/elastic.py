@@ -50,6 +50,12 @@ def area(force: Any, places: Places) -> float:
     return float(_quantity(force, places, "area"))
 
 
+def known_area(force: Any, places: Places) -> None:
+    """InputError where a force names a section that does not exist or has no area."""
+    if force.section is not None:
+        area(force, places)
+
+
 def one_way(force: Any) -> None:
     """A fault unless a force has either all of E, G, A, Iy, Iz and J, or both a material and a section."""
     columns = ("E", "G", *NAMES.values())

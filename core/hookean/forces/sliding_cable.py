@@ -116,7 +116,9 @@ class SlidingCable(groups.Grouped):
     group: Maybe[Labels] = Field(default=None, description="Number of the cable of each line; default: all are one")
     axial_stiffness: float | None = Field(default=1000.0, ge=0, le=1e12, description="EA [force]")
     material: str | None = Field(default=None, description="Name of a material, with a section in the place of EA")
-    section: str | None = Field(default=None, description="Name of a section, with a material in the place of EA")
+    section: str | None = Field(
+        default=None, description="Name of a section: with a material in the place of EA, or beside EA for the stress"
+    )
     rest_length: float | None = Field(
         default=None, gt=0, le=1e12, description="L0 of a whole cable [length]; default: the start length"
     )
@@ -139,11 +141,10 @@ class SlidingCable(groups.Grouped):
 
     @model_validator(mode="after")
     def _one_way(self) -> SlidingCable:
-        made = [name for name in ("material", "section") if getattr(self, name) is not None]
-        if len(made) == 1 or (self.axial_stiffness is None) == (not made):
-            said = (
-                " and ".join([*(["axial_stiffness"] if self.axial_stiffness is not None else []), *made]) or "nothing"
-            )
+        names = ("axial_stiffness", "material", "section")
+        made = [name for name in names if getattr(self, name) is not None]
+        if made not in (["axial_stiffness"], ["axial_stiffness", "section"], ["material", "section"]):
+            said = " and ".join(made) or "nothing"
             raise fault(f"{said} given; give either axial_stiffness, or both material and section")
         if self.rest_length is not None and self.force is not None:
             raise fault("rest_length and force given; give at most one of them")
@@ -162,6 +163,7 @@ class SlidingCable(groups.Grouped):
         axial = self.axial_stiffness
         if axial is None:
             axial = elastic.axial_stiffness(self, places)
+        elastic.known_area(self, places)
         head = np.arange(len(index)) - links[:, groups.FIRST].astype(np.int64)
         own = lengths(places.x[index[:, 1]] - places.x[index[:, 0]])
         rest = np.asarray(np.bincount(head, own, len(index))[head] if len(index) else own, dtype=np.float64)

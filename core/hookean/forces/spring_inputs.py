@@ -21,8 +21,9 @@ def one_way(springs: Springs) -> None:
     """A fault unless stiffness and prestress are each given in one way."""
     ways = [name for name in ("stiffness", "axial_stiffness") if getattr(springs, name) is not None]
     parts = [name for name in ("material", "section") if getattr(springs, name) is not None]
-    ways += [" and ".join(parts)] if parts else []
-    if len(ways) > 1 or len(parts) == 1 or not ways:
+    beside = parts == ["section"] and len(ways) == 1  # k or EA, and an area for the stress
+    ways += [" and ".join(parts)] if parts and not beside else []
+    if len(ways) > 1 or (len(parts) == 1 and not beside) or not ways:
         said = f"{' and '.join(ways)} given" if ways else "the stiffness is missing"
         raise fault(f"{said}; give exactly one of stiffness, axial_stiffness, or material and section")
     starts = [name for name in ("rest_length", "force", "strain") if getattr(springs, name) is not None]
@@ -57,6 +58,7 @@ def _cutoffs_in_order(lower: float | Floats, upper: float | Floats) -> None:
 def resolved(springs: Springs, places: Places, index: Ints) -> tuple[Floats, Floats]:
     """k [force/length] and the rest length [length], before the rest factor, of elements (m, 2); InputError where
     there is none."""
+    elastic.known_area(springs, places)
     start = np.zeros(len(index))
     if springs.rest_length is None or springs.strain is not None or springs.force is not None:
         start = lengths(places.x.take(index[:, 1], axis=0) - places.x.take(index[:, 0], axis=0))

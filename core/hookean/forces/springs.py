@@ -234,11 +234,12 @@ class Springs(Force):
     9.4, figures 9.11 to 9.13.
 
     Cables and bars: give the stiffness in one way, as k, as EA (k = EA / L0 of each element), or as a material and a
-    section (EA = E x area). With `tension_only` a spring is slack below its rest length, as a cable; with
-    `compression_only` it has no force above it, as a strut. Give the prestress in one way, too: as the `force` that the
-    spring has at its start length, the `strain` (l - L0) / L0 there, or the rest length. A rest factor multiplies the
-    rest length that follows: with the default, 1, the force is as given. A temperature, of a material with thermal
-    expansion, lengthens the rest length by 1 + expansion x temperature, on top of the prestress.
+    section (EA = E x area); a section beside k or EA gives the area for the stress. With `tension_only` a spring is
+    slack below its rest length, as a cable; with `compression_only` it has no force above it, as a strut. Give the
+    prestress in one way, too: as the `force` that the spring has at its start length, the `strain` (l - L0) / L0 there,
+    or the rest length. A rest factor multiplies the rest length that follows: with the default, 1, the force is as
+    given. A temperature, of a material with thermal expansion, lengthens the rest length by 1 + expansion x
+    temperature, on top of the prestress.
     """
 
     kind: Literal["springs"] = "springs"
@@ -249,7 +250,10 @@ class Springs(Force):
     stiffness: Maybe[NonNegatives] = Field(default=1000.0, description="k [force/length]")
     axial_stiffness: Maybe[NonNegatives] = Field(default=None, description="EA, in the place of k [force]")
     material: str | None = Field(default=None, description="Name of a material, with a section in the place of k")
-    section: str | None = Field(default=None, description="Name of a section, with a material in the place of k")
+    section: str | None = Field(
+        default=None,
+        description="Name of a section: with a material in the place of k, or beside k or EA",
+    )
     strength: Maybe[Positives] = Field(
         default=None, description="Breaking force, for the utilisation [force]; default: that of material and section"
     )

@@ -215,13 +215,12 @@ def _paint_shape(
     outline = np.concatenate([shape.edged[:, None] * thin, np.broadcast_to(colours, (len(lines), 4))])
     thickness = np.concatenate([shape.edged * _edge_width(count, boldness), widths])
     antialiased = np.concatenate([shape.edged, np.ones(len(lines), bool)])
-    axes.add_collection(
-        PolyCollection(
-            [shapes[i] for i in order], closed=False, facecolors=inside[order], edgecolors=outline[order],
-            linewidths=thickness[order], antialiaseds=antialiased[order], capstyle="round", zorder=zorder,
-        ),
-        autolim=False,
+    drawn = PolyCollection(
+        [shapes[i] for i in order], closed=False, facecolors=inside[order], edgecolors=outline[order],
+        antialiaseds=antialiased[order], capstyle="round", zorder=zorder,
     )  # fmt: skip
+    drawn.set_linewidth(thickness[order].tolist())  # afterwards: it is gone through once then, not twice
+    axes.add_collection(drawn, autolim=False)
 
 
 def _light(faces: Floats, eye: Floats) -> Floats:

@@ -164,12 +164,12 @@ class _Meshes:
     def shape(self, x: Floats, pairs: Ints) -> Shape:
         """Everything with the particles at `x`; what rides on none stays."""
         faces, edged, strokes = [np.zeros((0, 4, 3))], [np.zeros(0, bool)], []
-        joined = {tuple(pair) for pair in np.sort(pairs, axis=1).tolist()}
+        joined = np.unique(np.sort(pairs, axis=1) @ np.array([len(x), 1]))
         for item in self.items:
             if item["kind"] == "mesh":
                 rows, corners = self._riders(item["vertices"]), np.asarray(item["faces"])
                 faces.append(self._moved(item["vertices"], rows, x)[corners])
-                edged.append(_open(rows[corners], joined))
+                edged.append(_open(rows[corners], joined, len(x)))
             elif item["kind"] == "lines":
                 ends = np.asarray(item["lines"]).reshape(-1, 3)
                 strokes += list(self._moved(ends, self._riders(ends), x).reshape(-1, 2, 3))
@@ -178,7 +178,7 @@ class _Meshes:
                 strokes.append(smooth(points, item) if item["kind"] == "curve" else points)
         for corners in self.of_forces:
             faces.append(x[corners])
-            edged.append(_open(corners, joined))
+            edged.append(_open(corners, joined, len(x)))
         return Shape(x, pairs, np.concatenate(faces), np.concatenate(edged), strokes)
 
     def _riders(self, points: Any) -> Ints:
@@ -189,11 +189,12 @@ class _Meshes:
         return np.where((rows >= 0)[:, None], x[np.maximum(rows, 0)], np.asarray(points, np.float64))
 
 
-def _open(corners: Ints, joined: set[tuple[int, ...]]) -> NDArray[np.bool_]:
-    """Which faces have an edge without a spring along it, or a corner that is no particle."""
+def _open(corners: Ints, joined: Ints, count: int) -> NDArray[np.bool_]:
+    """Which faces have an edge without a spring along it, or a corner that is no particle; `joined` are the springs as
+    numbers, the first of their particles times `count` and the second one."""
     edges = np.sort(np.stack([corners, np.roll(corners, -1, axis=1)], axis=-1), axis=-1)
-    free = [any(a < 0 or (a != b and (a, b) not in joined) for a, b in face) for face in edges.tolist()]
-    return np.array(free, dtype=bool)
+    a, b = edges[..., 0], edges[..., 1]
+    return np.asarray(((a < 0) | ((a != b) & ~np.isin(a * count + b, joined))).any(axis=1))
 
 
 def _meshes_of_forces(scene: Scene) -> list[Ints]:

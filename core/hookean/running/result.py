@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 
 SMALL = (600, 450)  # pixels of the picture beside a summary
+ROUNDING = 1e-14  # part of the largest value of a column that a summary shows as 0
 
 
 class Status(StrEnum):
@@ -122,6 +123,7 @@ class Result:
         """The smallest and the largest value of a column."""
         values = np.asarray(entry[column])
         sizes = np.linalg.norm(values, axis=1) if values.ndim == 2 else values
+        sizes = np.where(np.abs(sizes) > ROUNDING * np.abs(sizes).max(), sizes, 0.0)
         unit = self.units.of(KINDS[entry["kind"]].outputs[column])
         return f"{column} {sizes.min():.4g} to {sizes.max():.4g} {unit}"
 

@@ -45,6 +45,22 @@ def utilisation(force: Any, places: Places, columns: Mapping[str, Floats]) -> Fl
     return rule(force, places, columns) if rule is not None else None
 
 
+def missing(force: Any, columns: Mapping[str, Any]) -> str:
+    """Why a force with these columns of a result has no stress or no utilisation, as a sentence; empty where it has
+    both or could have neither."""
+    if not np.size(columns.get("particles", ())):
+        return ""
+    lacks = [(STRESS, "section")] if force.kind_name in STRESSES and STRESS not in columns else []
+    lacks += [(NAME, "strength")] if force.kind_name in RULES and NAME not in columns else []
+    if not lacks:
+        return ""
+    without = " and no ".join(column for column, _ in lacks)
+    cause = " and ".join(cause for _, cause in lacks)
+    if force.kind_name == "beam" and lacks[0][0] == STRESS:
+        cause = "material and section" if force.section is None else "Wy or Wz of its section"
+    return f"{force.name or force.kind_name} has no {without}: give its {cause}."
+
+
 def breaking_force(force: Any, places: Places) -> Floats | None:
     """The force [force] at which the elements of springs break, one or one for each; None where it is not known."""
     if getattr(force, "strength", None) is not None:

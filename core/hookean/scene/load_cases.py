@@ -47,7 +47,9 @@ class ElasticLine(Model):
         default=None, description="EA [force], one or one for each element; default: stiffness x rest length"
     )
     material: str | None = Field(default=None, description="Name of a material, with a section in the place of EA")
-    section: str | None = Field(default=None, description="Name of a section, with a material in the place of EA")
+    section: str | None = Field(
+        default=None, description="Name of a section: with a material in the place of EA, or beside EA for the stress"
+    )
     strength: Maybe[Positives] = Field(
         default=None, description="Breaking force, for the utilisation [force]; default: that of material and section"
     )
@@ -55,9 +57,8 @@ class ElasticLine(Model):
 
     @model_validator(mode="after")
     def _one_way(self) -> ElasticLine:
-        if (self.material is None) != (self.section is None):
-            alone, other = ("material", "section") if self.section is None else ("section", "material")
-            raise fault(f"{alone} given without a {other}; give both, or axial_stiffness", f"/{alone}")
+        if self.material is not None and self.section is None:
+            raise fault("material given without a section; give both, or axial_stiffness", "/material")
         if self.material is not None and self.axial_stiffness is not None:
             raise fault("axial_stiffness and material given; give one of them", "/axial_stiffness")
         return self

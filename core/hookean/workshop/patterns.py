@@ -9,7 +9,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from hookean.discretize.flatten import Flat, flatten, oriented, outline, turned_along
+from hookean.discretize.flatten import Flat, directed, flatten, oriented, outline, turned_along
 from hookean.discretize.geodesics import cut_along
 from hookean.discretize.mesh_strips import row_edges, strips
 from hookean.discretize.meshes import as_mesh
@@ -282,10 +282,10 @@ def _grain(points: Floats, vertices: Ints, faces: Ints, threads: Ints | None) ->
     if threads is None:
         ways = points - points.mean(axis=0)
     else:
-        place = {int(vertex): i for i, vertex in enumerate(vertices)}
-        sides = {frozenset(pair) for face in faces.tolist() for pair in zip(face, [*face[1:], face[0]], strict=True)}
-        known = [(place.get(a, -1), place.get(b, -1)) for a, b in threads.tolist()]
-        own = np.array([pair for pair in known if frozenset(pair) in sides])
+        place = np.minimum(np.searchsorted(vertices, threads), len(vertices) - 1)
+        known = place[(vertices[place] == threads).all(axis=1)]
+        sides = np.sort(directed(faces), axis=1) @ [len(vertices), 1]
+        own = known[np.isin(np.sort(known, axis=1) @ [len(vertices), 1], sides)]
         ways = points[own[:, 1]] - points[own[:, 0]]
     values, axes = np.linalg.eigh(ways.T @ ways)
     way = axes[:, int(np.argmax(values))]

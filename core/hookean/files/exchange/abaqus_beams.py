@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean.files.exchange.abaqus_blocks import Elements, row
 from hookean.files.exchange.beams import Beams
 
 Floats = NDArray[np.float64]
@@ -35,6 +36,15 @@ class BeamPart:
         whole = np.column_stack([rows, np.round(axes, 12) + 0.0])
         self.sections, self.which = np.unique(whole, axis=0, return_inverse=True)
 
+    def elements(self, names: Sequence[str]) -> list[Elements]:
+        """The block of all beams; none without beams."""
+        if not self.beams:
+            return []
+        sizes = np.cumsum([0, *self.counts])
+        sets = [(n, np.arange(a, b)) for n, a, b in zip(names, sizes[:-1], sizes[1:], strict=False)]
+        sets += [(f"BEAM_SECTION_{i + 1}", np.flatnonzero(self.which == i)) for i in range(len(self.sections))]
+        return [Elements(BEAM, self.pairs, tuple(sets))]
+
     def lines(self, first: int) -> list[str]:
         """The text behind nodes, elements and sets; `first` is the number of the first element."""
         return [*self._sections(), *self._links(), *self._releases(first)]
@@ -44,12 +54,12 @@ class BeamPart:
         lines = []
         for i, (e, g, area, about_y, about_z, torsion, along_y, along_z, *axis) in enumerate(self.sections.tolist()):
             lines += [f"*BEAM GENERAL SECTION, ELSET=BEAM_SECTION_{i + 1}, SECTION=GENERAL"]
-            lines += [", ".join(map(repr, (area, about_y, 0.0, about_z, torsion))), ", ".join(map(repr, axis))]
-            lines += [f"{e!r}, {g!r}"]
+            lines += [row((area, about_y, 0.0, about_z, torsion)), row(axis)]
+            lines += [row((e, g))]
             if along_y > 0.0 or along_z > 0.0:
                 # without a shear area along an axis, one so large that it does not count
                 stiff = [g * (shear if shear > 0.0 else 1e6 * area) for shear in (along_z, along_y)]
-                lines += ["*TRANSVERSE SHEAR STIFFNESS", f"{stiff[0]!r}, {stiff[1]!r}"]
+                lines += ["*TRANSVERSE SHEAR STIFFNESS", row(stiff)]
         return lines
 
     def _links(self) -> list[str]:

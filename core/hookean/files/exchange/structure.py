@@ -9,6 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.files.exchange.beams import Beams
+from hookean.files.exchange.sheets import Sheet, sheets
+from hookean.forces import elastic
 from hookean.forces.base import complete
 from hookean.forces.beam import Beam
 from hookean.forces.membrane import Membrane
@@ -18,6 +20,7 @@ from hookean.forces.support import Support
 from hookean.running.result import Result
 from hookean.running.utilisation import NAME, dimensions
 from hookean.system.system import System, compile
+from hookean.values.materials import Material
 from hookean.values.units import Units
 
 Floats = NDArray[np.float64]
@@ -28,7 +31,8 @@ Ints = NDArray[np.int64]
 class Lines:
     """The elements of one force along lines: `pairs` (m, 2) of particles, `columns` of numbers (m,) by name, with the
     `dimensions` of these, and of springs `axial_stiffness` EA (m,) [force] and `rest_length` (m,) [length], 0 where
-    an element has none; `one_way`: whether they go slack in tension or compression, or beyond a length."""
+    an element has none; `one_way`: whether they go slack, `compression` or `tension` or, beyond a length, `other`;
+    `area` [length^2] of the section and the name of the `material`, where they are known."""
 
     name: str
     kind: str
@@ -37,7 +41,9 @@ class Lines:
     dimensions: dict[str, str]
     axial_stiffness: Floats
     rest_length: Floats
-    one_way: bool
+    one_way: str
+    area: float | None = None
+    material: str | None = None
 
     @property
     def force(self) -> Floats:
@@ -52,7 +58,8 @@ class Structure:
     (n, 3) axes, `clamped` (n, 3) rotations about axes, `elastic` (n, 6) the stiffness of elastic supports along and
     about axes [force/length, force length]; `faces` (m, 4) of meshes by name, in particles; `beams` of each force that
     has some; `others` are the names of forces between particles that are neither; `cloth` has the stresses of membranes
-    by the name of their mesh, of each of its faces (see `_cloth`)."""
+    by the name of their mesh, of each of its faces (see `_cloth`); `sheets` are membranes with their shells,
+    `materials` those that are used."""
 
     points: Floats
     displacements: Floats
@@ -69,6 +76,8 @@ class Structure:
     others: tuple[str, ...] = ()
     elastic: Floats = field(default_factory=lambda: np.zeros((0, 6)))
     cloth: dict[str, dict[str, Floats]] = field(default_factory=dict)
+    sheets: tuple[Sheet, ...] = ()
+    materials: dict[str, Material] = field(default_factory=dict)
 
     @classmethod
     def of(cls, result: Result, system: System | None = None) -> Structure:
@@ -88,10 +97,13 @@ class Structure:
         loads = system.evaluate(state, only="load")[0]
         moments = np.zeros((count, 3))
         moments[system.slots.particles] = system.slots.moments(loads, system.slots.particles)
+        cloth, written = sheets(system)
+        lines = tuple(_lines(system, result))
+        used = {line.material for line in lines} | {sheet.material for sheet in cloth}
         return cls(
             state.x[:count],
             (state.x - system.x)[:count],
-            tuple(_lines(system, result)),
+            lines,
             {name: found[(found >= 0).all(axis=1)] for name, found in faces.items()},
             state.free[:count] == 0,
             clamped,
@@ -105,9 +117,11 @@ class Structure:
                 for force, entry in zip(system.scene.forces, result.forces, strict=True)
                 if isinstance(force, Beam) and np.size(entry.get("particles", ()))
             ),
-            tuple(_others(result)),
+            tuple(_others(result, written)),
             _elastic(result, count),
             _cloth(system, result),
+            tuple(cloth),
+            {name: system.places.material(name) for name in sorted(filter(None, used))},
         )
 
     @property
@@ -131,8 +145,11 @@ def _lines(system: System, result: Result) -> list[Lines]:
         columns = {n: np.asarray(entry[n], dtype=float) for n in known if np.ndim(entry.get(n, 0.0)) == 1}
         stiffness, rest = axial.get(number, (np.zeros(len(pairs)), np.zeros(len(pairs))))
         name = force.name or force.kind_name
-        free = isinstance(force, Springs) and _one_way(force)
-        found.append(Lines(name, force.kind_name, pairs, columns, known, stiffness, rest, free))
+        free = _one_way(force, rest) if isinstance(force, Springs) else ""
+        section, material = getattr(force, "section", None), getattr(force, "material", None)
+        area = elastic.area(force, system.places) if section is not None and number in axial else None
+        made = material if area is not None else None
+        found.append(Lines(name, force.kind_name, pairs, columns, known, stiffness, rest, free, area, made))
     return found
 
 
@@ -175,18 +192,26 @@ def _cloth(system: System, result: Result) -> dict[str, dict[str, Floats]]:
     return found
 
 
-def _one_way(force: Springs) -> bool:
-    cut = np.any(force.lower_cutoff) or np.any(force.upper_cutoff)
-    return bool(force.tension_only or force.compression_only or cut)
+def _one_way(force: Springs, rest: Floats) -> str:
+    """How springs go slack: below a cutoff that is the rest length, in `compression`."""
+    low, high = np.asarray(force.lower_cutoff), np.asarray(force.upper_cutoff)
+    if force.tension_only or force.compression_only:
+        other = high if force.tension_only else low
+        return "other" if other.any() else "compression" if force.tension_only else "tension"
+    if not (low.any() or high.any()):
+        return ""
+    same = np.size(low) in (1, len(rest)) and bool((np.abs(low - rest) <= 1e-12 * rest).all())
+    return "compression" if same and not high.any() else "other"
 
 
-def _others(result: Result) -> list[str]:
-    """The names of forces that are neither loads nor along lines."""
+def _others(result: Result, written: set[int]) -> list[str]:
+    """The names of forces that are neither loads nor along lines, nor those of these numbers."""
     assert result.scene is not None
     found = []
-    for force, entry in zip(result.scene.forces, result.forces, strict=True):
+    for number, (force, entry) in enumerate(zip(result.scene.forces, result.forces, strict=True)):
         pairs = np.asarray(entry.get("particles", ()))
-        if type(force).role == "support" or (type(force).role == "internal" and pairs.shape[1:] != (2,)):
+        role, here = type(force).role, number in written or isinstance(force, Support)
+        if not here and (role == "support" or (role == "internal" and pairs.shape[1:] != (2,))):
             found.append(force.name or force.kind_name)
     return found
 

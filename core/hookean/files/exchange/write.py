@@ -33,7 +33,8 @@ def exchange(result: Result, target: Path, system: System | None = None) -> list
 
     check_target(target)
     ending = ending_of(target)
-    structure = Structure.of(result, system)
+    # beams and shells are without stress where their scene starts, which a system of a load case has moved to the form
+    structure = Structure.of(result, None if ending == ".inp" else system)
     import_module(f"hookean.files.exchange.{EXCHANGED[ending]}").write(structure, target)
     said = [f"A {ending} file stores the shape, its lines and results, not the model; save the scene, too."]
     if ending == ".inp":
@@ -45,7 +46,9 @@ def _left(structure: Structure) -> list[str]:
     """What an Abaqus file leaves out, as sentences."""
     without = [g.name for g in structure.lines if g.kind != "beam" and not (g.axial_stiffness > 0.0).any()]
     left = [*without, *structure.others]
-    said = [f"{', '.join(left)}: not in the file, which has beams and lines with an axial stiffness."] if left else []
-    slack = [g.name for g in structure.lines if g.one_way and (g.axial_stiffness > 0.0).any()]
-    said += [f"{', '.join(slack)}: trusses that do not go slack; add *NO COMPRESSION or *NO TENSION."] if slack else []
-    return said + [f"{part.name}: the file does not hold {what}." for part in structure.beams for what in part.left]
+    has = "beams, membranes, lines with an axial stiffness, and elastic supports"
+    said = [f"{', '.join(left)}: not in the file, which has {has}."] if left else []
+    slack = [g.name for g in structure.lines if g.one_way == "other" and (g.axial_stiffness > 0.0).any()]
+    said += [f"{', '.join(slack)}: trusses without their cutoffs."] if slack else []
+    parts = [(part.name, part.left) for part in structure.beams] + [(part.name, part.left) for part in structure.sheets]
+    return said + [f"{name}: the file does not hold {what}." for name, without in parts for what in without]
