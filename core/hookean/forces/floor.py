@@ -164,7 +164,9 @@ class Floor(Force):
     )
     restitution: float = Field(default=0.7, ge=0, le=1, description="Part of the speed kept in a rebound [-]")
     static_friction: float = Field(default=0.6, ge=0, le=1e12, description="mu_s [-]: holds up to mu_s N")
-    kinetic_friction: float = Field(default=0.5, ge=0, le=1e12, description="mu_k [-]: slides against mu_k N; no more than mu_s")
+    kinetic_friction: float = Field(
+        default=0.5, ge=0, le=1e12, description="mu_k [-]: slides against mu_k N; at most mu_s"
+    )
 
     formula: ClassVar[str] = "N ≥ 0, |T| ≤ μ N"
     role: ClassVar[Literal["internal", "load", "support"]] = "support"
