@@ -361,7 +361,7 @@ def test_friction_that_slides_with_more_than_it_holds_is_refused() -> None:
             Scene.read({"particles": [[0, 0, 0]], **scene})
         assert str(caught.value) == f"{place}/kinetic_friction: {said}"
     running = Simulation(Scene.read({"particles": [[0, 0, 0]], "forces": [{"kind": "floor", "name": "ground"}]}))
-    with pytest.raises(InputError, match="/forces/ground/kinetic_friction: 0[.]7 given"):
+    with pytest.raises(InputError, match=r"/forces/ground/kinetic_friction: 0[.]7 given"):
         running.patch({"forces": {"ground": {"kinetic_friction": 0.7}}})
     running.patch({"forces": {"ground": {"static_friction": 0.2}}})
     smooth = running.system.scene
