@@ -31,11 +31,17 @@ c = rg.Polyline(4)
 for p in points + points[:1]:
     c.Add(p.X, p.Y, p.Z)
 """
+TRIPOD = [(np.cos(turn), np.sin(turn)) for turn in np.radians([0.0, 120.0, 240.0])]
 AXES = [[(0.5, 0.3, -1.0), (0.5, 0.5, 2.0)], [(3.5, 0.3, -1.0), (3.5, 0.5, 5.0)]]
 FACES = [
     [(0.2, 0.2, 1.0), (0.8, 0.2, 1.0), (0.8, 0.8, 1.1)],
     [(3.2, 0.2, 4.0), (3.8, 0.2, 1.0), (3.8, 0.8, 1.0)],
 ]
+PLANES = [
+    [(0.5 + 0.5 * c, 0.5 + 0.5 * s, 1.0) for c, s in TRIPOD],
+    [(3.5 + 0.5 * c, 0.5 + 0.5 * s, 0.0) for c, s in TRIPOD],
+]
+"""Points in the top of one box and the bottom of the other."""
 CORNERS = np.array([[x, y, z] for z in (0, 1) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))], float)
 
 
@@ -56,6 +62,8 @@ def assembly(name: str, inputs: tuple[str, str], shapes: list[Any], kind: str, f
         ends = [d.point(*place) for place in shapes[i]]
         if kind == "line":
             wired[inputs[i].lower()] = d.native("Line", start_point=ends[0], end_point=ends[1])
+        elif kind == "plane":
+            wired[inputs[i].lower()] = d.native("XY Plane", origin=d.point(dx + 0.5, 0.5, 1.0 - i))
         else:
             wired[inputs[i].lower()] = d.script(f"Outline {i}", OUTLINE, {"points": ends}, ["c"], lists=["points"])
     typed = (("PlaneA", None), ("PlaneB", None), *((one, None) for one in inputs), ("Flip", False), ("Strength", 7.0))
@@ -67,7 +75,11 @@ def assembly(name: str, inputs: tuple[str, str], shapes: list[Any], kind: str, f
 @pytest.mark.parametrize("framed", [True, False])
 @pytest.mark.parametrize(
     ("name", "inputs", "shapes", "kind"),
-    [("Concentric", ("AxisA", "AxisB"), AXES, "line"), ("AlignFaces", ("FaceA", "FaceB"), FACES, "outline")],
+    [
+        ("Concentric", ("AxisA", "AxisB"), AXES, "line"),
+        ("AlignFaces", ("FaceA", "FaceB"), FACES, "outline"),
+        ("AlignFaces", ("FaceA", "FaceB"), PLANES, "plane"),
+    ],
 )
 def test_axes_and_faces_beside_the_corners_of_bodies_move_with_them(
     name: str, inputs: tuple[str, str], shapes: list[Any], kind: str, framed: bool, tmp_path: Path

@@ -410,8 +410,7 @@ GOALS: dict[str, Swap] = {
                 feeds={f"point_{i}": f"0.point_{i}" for i in (1, 2, 3, 4, 5, 6)},
             ),
         ),
-        "faces are outlines, whose corners are particles of the bodies whose planes are given; Kangaroo's law is not "
-        "published",
+        "three points of each face are particles of the body whose plane is given; Kangaroo's law is not published",
     ),
     "isothermic": Swap(
         (

@@ -242,12 +242,24 @@ _MATCHED = """carriers, carried = [], []
 given = [canvas.listed(planes_) or [None], canvas.listed(planes_of_others_) or [None]]
 for one, other, frame_a, frame_b in zip(*canvas.matched(canvas.listed(%s), canvas.listed(_others), *given)):
 """
-MATES = f'''"""Three corners of each of two faces."""
+MATES = f'''"""Three corners of each of two faces: of their outlines, or round the origins of their planes."""
 
 from hookean_client import canvas
 
+
+def corners(face, frame):
+    """Where a plane is given, in it, counter-clockwise, as far from its origin as that is from the body's frame."""
+    if not hasattr(face, "XAxis"):
+        return canvas.geometry.straight(face)[:3]
+    o, x, y = ([v.X, v.Y, v.Z] for v in (face.Origin, face.XAxis, face.YAxis))
+    at = [frame.Origin.X, frame.Origin.Y, frame.Origin.Z] if frame is not None else o
+    size = sum((p - q) ** 2 for p, q in zip(o, at)) ** 0.5 or 1.0
+    ways = (1.0, 0.0), (-0.5, 0.75**0.5), (-0.5, -(0.75**0.5))
+    return [[p + size * (c * u + s * v) for p, u, v in zip(o, x, y)] for c, s in ways]
+
+
 columns = point_1, point_2, point_3, point_4, point_5, point_6 = [], [], [], [], [], []
-{_MATCHED % "_faces"}    places = canvas.geometry.straight(one)[:3] + canvas.geometry.straight(other)[:3]
+{_MATCHED % "_faces"}    places = corners(one, frame_a) + corners(other, frame_b)
 {_JOINED % (3, 3)}'''
 AXLES = f'''"""Start and end of each of two axes."""
 
@@ -269,7 +281,7 @@ HELPERS = {
         "Mates",
         "Corners of pairs of faces",
         MATES,
-        (Slot("_faces", "Outlines of faces", 1), Slot("_others", "Outlines, one for each", 1), *_PLANES),
+        (Slot("_faces", "Planes or outlines of faces", 1), Slot("_others", "Others, one for each", 1), *_PLANES),
         (*(Slot(f"point_{i}", f"Point {i} of each pair") for i in (1, 2, 3, 4, 5, 6)), *_CARRIED),
     ),
     "*axles": Recipe(
