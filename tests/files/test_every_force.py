@@ -17,7 +17,7 @@ from soak import sampled
 
 
 def table(force: dict[str, Any], x: np.ndarray) -> str:
-    """The table of a force, lists and numbers as in JSON, with coordinates in place of particles, and the layer of its mesh."""
+    """The table of a force, lists and numbers as in JSON: coordinates in place of particles, the layer of its mesh."""
     given = dict(force)
     if "particles" in given:
         places = x[np.asarray(given.pop("particles"))]
