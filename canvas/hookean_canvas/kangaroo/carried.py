@@ -54,6 +54,8 @@ def _insert(work: Importing, bodies: Chunk, joining: list[Chunk]) -> None:
     for port, name in ((carriers, "carriers"), (carried, "carried")):
         port.put("Mapping", Type.INT32, 1)  # flattened
         connect(port, [_output(one, name) for one in joining])
+    if bodies.value("Locked"):
+        chunk.put("Locked", Type.BOOL, True)
     make.put_object(work.objects, PYTHON3_SCRIPT, chunk)
     x, y, wide, _ = bounds_of(bodies) or (0.0, 0.0, 0.0, 0.0)
     box = size([slot.name for slot in recipe.inputs], [slot.name for slot in recipe.outputs])
