@@ -326,10 +326,11 @@ class Swapping:
                 (w for k, w in self.swap.without.items() if k in map(key, names_of(port))), "it has no counterpart"
             )
             self.whole.because[found] = why
-            if set(self.swap.idle) & set(map(key, names_of(port))):
+            expected = next((v for k, v in self.swap.usual.items() if k in map(key, names_of(port))), make)
+            given = [make.constant(self.whole.streams.owner(one)) for one in sources(port)]
+            if set(self.swap.idle) & set(map(key, names_of(port))) or set(given) == {expected} != {None}:
                 self.whole.idle.add(found)
             value = make.single(port)
-            expected = next((v for k, v in self.swap.usual.items() if k in map(key, names_of(port))), make)
             if not sources(port) and make.stored(port) and expected is not None and value != expected:
                 self._gone(port, why, value)
         for port in outputs(self.old):
