@@ -158,7 +158,7 @@ class Swapping:
         old = piece.outputs.get(slot.name)
         new = uuid5(id_, f"out {slot.name}")
         port = next((self.results[name] for name in (old or "").split("|") if name in self.results), None)
-        if port is None and len(piece.outputs) == 1 and old is not None and len(outputs(self.old)) == 1:
+        if port is None and len(piece.outputs) == 1 == len(outputs(self.old)) and old is not None and not piece.feeds:
             port = outputs(self.old)[0]  # its only output, whatever this version calls it
         if port is None:
             return new
