@@ -1,9 +1,9 @@
 """A plane no particle passes: rebound with `restitution`, dry (Coulomb) friction.
 
 A particle that hits with normal speed u leaves with e u, so a ball dropped from h rises to h e^2;
-one that rests is carried with N >= 0 and held sideways up to mu_s N, and slides against mu_k N.
-Classic Kangaroo's friction numbers have no published formula; the friction coefficients here are
-ours.
+one that rests is carried with N >= 0 and held sideways up to mu_s N, and slides against mu_k N,
+with mu_k <= mu_s. Classic Kangaroo's friction numbers have no published formula; the friction
+coefficients here are ours.
 
 N >= 0, |T| <= mu N
 """

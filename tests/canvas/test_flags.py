@@ -142,3 +142,18 @@ def test_what_only_draws_is_evaluated_once_after_the_last_solution(monkeypatch: 
     outcome = canvas.run(20.0)
     assert counted.count("A+B") == 3 and counted.count("shown") == 1, counted
     assert outcome.panels["shown"].values_in_order() == [3.0]
+
+
+def test_an_option_that_a_stand_in_does_not_look_at_is_warned_of() -> None:
+    """Options of a component's menu are numbers and switches in its container: one that is chosen is named, unless
+    it is as in a new component, concerns only how it looks, or is one that the stand-in follows."""
+    d = Definition("menu", "Menu", "Options of components.")
+    box = d.native("Bounding Box", content=d.point(0, 0, 0))
+    crossed = d.native("Cross Reference")
+    options = ((box, "UnionBox", True), (box, "Hidden", True), (box, "Other", 0), (crossed, "CrossMode", 6))
+    for made, name, value in options:
+        made.container.put(name, Type.BOOL if isinstance(value, bool) else Type.INT32, value)
+    messages = Canvas(graph.of(d.archive())).run(20.0).messages
+    assert [(m.level, m.text) for m in messages if "option" in m.text] == [
+        ("warning", "its option UnionBox = True is not taken into account")
+    ]

@@ -233,7 +233,7 @@ def test_a_mesh_and_a_plane_become_a_contact_of_its_corners() -> None:
 
 @pytest.mark.parametrize(
     ("name", "inputs", "ours", "helper"),
-    [("Concentric", "Axis", "Concentric", "Ends"), ("AlignFaces", "Face", "AlignFaces", "Mates")],
+    [("Concentric", "Axis", "Concentric", "Axles"), ("AlignFaces", "Face", "AlignFaces", "Mates")],
 )
 @pytest.mark.parametrize("flip", [False, True])
 def test_mates_take_the_corners_of_what_they_join(name: str, inputs: str, ours: str, helper: str, flip: bool) -> None:
@@ -684,3 +684,20 @@ def test_bad_files_are_refused_in_one_sentence(tmp_path: Path) -> None:
     ]:
         found = shell.invoke(app, ["import", *words])
         assert found.exit_code == 2 and said in found.stderr and found.stderr.count("\n") == 1
+
+
+@pytest.mark.parametrize("kind", ["panel", "toggle", "parameter"])
+@pytest.mark.parametrize("value", [True, False])
+def test_a_wire_with_the_usual_value_into_an_input_without_counterpart_is_no_loss(kind: str, value: bool) -> None:
+    """A solid that stays where it is is what Unidirectional asks for with True; with False it is lost."""
+    d = Kangaroo("way", "Way", "A wired flag.")
+    if kind == "panel":
+        flag = d.text("Flag", str(value))
+    else:
+        flag = d.toggle("Flag", value) if kind == "toggle" else d.parameter("Boolean", "Flag", [value])
+    typed = (("Points", None), ("Solid", None), ("Interior", False), ("Unidirectional", True), ("Strength", 1.0))
+    points, solid = d.parameter("Point", "Points"), d.parameter("Mesh", "Solid")
+    d.solved(d.kangaroo("SolidPointCollide", typed, ["S"], points=points, solid=solid, unidirectional=flag))
+    _, report = translated(d)
+    assert report.complete == value
+    assert [why for _, why in (report.idle if value else report.lost)] == ["the solid stays where it is"]

@@ -35,13 +35,41 @@ class Stored:
         self.inputs = self.outputs = [graph.Port(UUID(int=i), name, name) for i, name in enumerate(names)]
         self.container = Chunk("Container")
         for name, value in items.items():
-            self.container.put(name, Type.BOOL if isinstance(value, bool) else Type.STRING, value)
+            kinds = {bool: Type.BOOL, int: Type.INT32}
+            self.container.put(name, kinds.get(type(value), Type.STRING), value)
 
 
 def test_list_item_has_outputs_for_items_before_and_after_and_wraps() -> None:
     node = Stored(["i", "+1", "-1"])
     assert run("List Item", list("abc"), 2, True, node=node) == ["c", "a", "b"]
     assert run("List Item", list("abc"), 2, False, node=node) == ["c", None, "b"]
+
+
+@pytest.mark.parametrize(
+    ("mode", "expected"),
+    [
+        (0, "aa ab ac ba bb bc ca cb cc"),
+        (1, "ab ac ba bc ca cb"),
+        (2, "ab ac ba bc ca cb"),
+        (3, "aa ba bb ca cb cc"),
+        (4, "aa ab ac bb bc cc"),
+        (5, "ba ca cb"),
+        (6, "ab ac bc"),
+    ],
+)
+def test_cross_reference_leaves_out_the_combinations_that_its_menu_says(mode: int, expected: str) -> None:
+    """A public definition stores 5 for contacts between all bodies: each pair once, and none with itself."""
+    first, second = run("Cross Reference", list("abc"), list("abc"), node=Stored([], CrossMode=mode))
+    assert [a + b for a, b in zip(first, second, strict=True)] == expected.split()
+
+
+def test_cross_reference_takes_more_lists() -> None:
+    found = run("Cross Reference", [0, 1], [0, 1], [0, 1], node=Stored([], CrossMode=2))
+    assert list(map(tuple, found)) == [(), (), ()]  # two of three are always the same of two
+    found = run("Cross Reference", [0, 1], [2], [3, 4], node=Stored([]))
+    assert [list(one) for one in found] == [[0, 0, 1, 1], [2, 2, 2, 2], [3, 4, 3, 4]]
+    with pytest.raises(Unfit, match="unknown mode 9"):
+        run("Cross Reference", [0], [0], node=Stored([], CrossMode=9))
 
 
 # trees

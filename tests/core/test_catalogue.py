@@ -133,3 +133,18 @@ def test_markdown_has_a_row_and_a_table_for_every_force() -> None:
     tables = [line for line in text.splitlines() if line.startswith("|")]
     assert all(line.replace("\\|", "").count("|") in (5, 6) for line in tables)
     assert not np.any(["None" in line for line in tables])
+
+
+def test_the_command_prints_one_force_or_a_scene_with_it() -> None:
+    """The scene is that of the catalogue, which `hookean relax` takes; a kind that is not there is a sentence."""
+    from typer.testing import CliRunner
+
+    from hookean.cli import app
+
+    def run(*arguments: str) -> Any:
+        return CliRunner().invoke(app, ["forces", *arguments])
+
+    assert run("wind").stdout.startswith("wind  ") and "\n\n" not in run("wind").stdout.strip()
+    assert json.loads(run("wind", "--scene").stdout) == ENTRIES["wind"]["scene"]
+    assert "unknown kind of force 'wnd'; did you mean wind?" in run("wnd").stderr and run("wnd").exit_code == 2
+    assert "hookean forces springs --scene" in run("--scene").stderr

@@ -206,5 +206,5 @@ def test_example_obeys_the_law_of_the_bound_where_it_is_pressed_hard() -> None:
 def test_contacts_alone_create_no_particles() -> None:
     """As loads do, they act on what is there; `lines` of theirs must meet it."""
     alone = Scene.read({"forces": [{"kind": "collide_lines", "lines": [[[0, 0, 0], [1, 0, 0]]]}]})
-    with pytest.raises(InputError, match="loads and contacts alone create none; give particles, or springs"):
+    with pytest.raises(InputError, match="no particles, and collide_lines alone create none; give their coordinates"):
         relax(alone)

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hookean import Scene, Simulation
+from hookean import InputError, Scene, Simulation
 from hookean.discretize import edges, grid
 from hookean.running.result import Status
 from hookean.solvers import solver
@@ -348,20 +348,26 @@ def test_damping_does_not_hold_what_static_friction_cannot() -> None:
     assert np.abs(running.state.v).max() <= 2.0 * math.exp(-20.0) * (pull - kinetic * press) / stiffness
 
 
-@pytest.mark.parametrize("push", [0.35, 0.45])
-def test_friction_that_slows_more_than_it_holds_does_not_push_back(push: float) -> None:
-    """mu_s 0.3 < mu_k 0.5: a push between both does not overcome mu_k, and never moves a particle against itself."""
-    system = compile(
-        Scene.read(
-            {
-                "particles": [[0, 0, 0.0]], "forces": [{"kind": "unary", "particles": [0], "vector": [push, 0, -1.0]}],
-                "settings": {"time_step": 0.01, "floor": {"static_friction": 0.3, "kinetic_friction": 0.5}},
-            }
-        )
-    )  # fmt: skip
-    state = system.start()
-    solver("verlet").advance(system, state, 100, 0.0)
-    assert (state.x == 0.0).all() and (state.v == 0.0).all()
+def test_friction_that_slides_with_more_than_it_holds_is_refused() -> None:
+    """mu_s 0.3 < mu_k 0.5: the same push would and would not move what rests. In a scene, its settings and a patch. A
+    smooth floor of which only mu_s is given slides with no more, as does what is written of it."""
+    wrong = {"kind": "floor", "static_friction": 0.3, "kinetic_friction": 0.5}
+    said = "0.5 given, above the static friction, 0.3; lower it, or raise static_friction"
+    for place, scene in (
+        ("/forces/0", {"forces": [wrong]}),
+        ("/settings/floor", {"forces": [], "settings": {"floor": {**wrong}}}),
+    ):
+        with pytest.raises(InputError) as caught:
+            Scene.read({"particles": [[0, 0, 0]], **scene})
+        assert str(caught.value) == f"{place}/kinetic_friction: {said}"
+    running = Simulation(Scene.read({"particles": [[0, 0, 0]], "forces": [{"kind": "floor", "name": "ground"}]}))
+    with pytest.raises(InputError, match=r"/forces/ground/kinetic_friction: 0[.]7 given"):
+        running.patch({"forces": {"ground": {"kinetic_friction": 0.7}}})
+    running.patch({"forces": {"ground": {"static_friction": 0.2}}})
+    smooth = running.system.scene
+    assert smooth.forces[0].kinetic_friction == 0.2 and Scene.read(smooth.canonical).digest == smooth.digest
+    running.patch({"forces": {"ground": {"static_friction": 0.4}}})
+    assert running.system.scene.forces[0].kinetic_friction == 0.4
 
 
 def test_a_hanging_heavy_chain_swings_at_laguerre_frequencies() -> None:

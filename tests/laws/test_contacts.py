@@ -32,9 +32,10 @@ def table(kind: str) -> np.ndarray:
 
 def plane(rng: np.random.Generator) -> np.ndarray:
     """Parameters of a floor of any place, slope and roughness."""
+    holds = rng.uniform(0, 1)
     floor = Floor(
         point=rng.normal(size=3), normal=rng.normal(size=3), restitution=rng.uniform(0, 1),
-        static_friction=rng.uniform(0, 1), kinetic_friction=rng.uniform(0, 1),
+        static_friction=holds, kinetic_friction=holds * rng.uniform(0, 1),
     )  # fmt: skip
     (group,) = compile(scene_of(floor, np.zeros((1, 3)))).contacts
     return group.block.parameters

@@ -55,8 +55,7 @@ _LOAD = Swap(
     {"w": 1.0, "weighting": 1.0},
 )
 
-_NAMED = "a body is known by its points"
-_APART = "points that move with the body are particles of it"
+_PLANES = {"planea": "planes", "planeb": "planes_of_others"}
 _BODIES = {"part": "meshes", "points": "points", "plane": "frames"}
 _RIGID = Swap(
     (
@@ -373,49 +372,45 @@ GOALS: dict[str, Swap] = {
     "rigidbodycollide": Swap(
         (
             Piece("RigidCollide", {"strength": "strength"}, {"force": "solidcollide"}),
-            Piece("*solids", {"mesha": "meshes", "meshb": "others"}, feeds={"points": "0.point", "numbers": "0.group"}),
+            Piece(
+                "*solids",
+                {"mesha": "meshes", "meshb": "others", **_PLANES},
+                feeds={"points": "0.point", "numbers": "0.group"},
+            ),
         ),
         "the convex hulls of both meshes; k is a pressure by depth here, and Kangaroo's law is not published",
-        without=dict.fromkeys(("planea", "planeb"), _NAMED),
-        usual=dict.fromkeys(("planea", "planeb"), None),
-        idle=("planea", "planeb"),
     ),
     "solidplanecollide": Swap(
         (
             Piece("SolidPlaneCollide", {"strength": "strength"}, {"force": "solidplanecollide"}),
-            Piece("*solids", {"solid": "meshes"}, feeds={"points": "0.point"}),
+            Piece("*solids", {"solid": "meshes", "solidplane": "planes"}, feeds={"points": "0.point"}),
             Piece("*plane", {"collisionplane": "planes"}, feeds={"origin": "0.origin", "normal": "0.normal"}),
         ),
         "k for each corner; Kangaroo's law is not published",
-        without={"solidplane": _NAMED},
-        usual={"solidplane": None},
-        idle=("solidplane",),
     ),
     "concentric": Swap(
         (
             Piece("Concentric", {"strength": "strength"}, {"force": "concentric"}),
             Piece(
-                "*ends",
-                {"axisa": "lines", "axisb": "others"},
+                "*axles",
+                {"axisa": "lines", "axisb": "others", **_PLANES},
                 feeds={f"point_{i}": f"0.point_{i}" for i in (1, 2, 3, 4)},
             ),
         ),
-        "axes start and end at points of their bodies; Kangaroo's law is not published",
-        without={**dict.fromkeys(("planea", "planeb"), _APART), "flip": "an axis has no direction here"},
-        usual={"planea": None, "planeb": None, "flip": False},
+        "the ends of axes are particles of the bodies whose planes are given; Kangaroo's law is not published",
+        without={"flip": "an axis has no direction here"},
+        usual={"flip": False},
     ),
     "alignfaces": Swap(
         (
             Piece("AlignFaces", {"strength": "strength", "flip": "flip"}, {"force": "alignfaces"}),
             Piece(
                 "*mates",
-                {"facea": "faces", "faceb": "others"},
+                {"facea": "faces", "faceb": "others", **_PLANES},
                 feeds={f"point_{i}": f"0.point_{i}" for i in (1, 2, 3, 4, 5, 6)},
             ),
         ),
-        "faces are outlines with corners at points of their bodies; Kangaroo's law is not published",
-        without=dict.fromkeys(("planea", "planeb"), _APART),
-        usual=dict.fromkeys(("planea", "planeb"), None),
+        "three points of each face are particles of the body whose plane is given; Kangaroo's law is not published",
     ),
     "isothermic": Swap(
         (

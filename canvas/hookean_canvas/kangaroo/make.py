@@ -11,6 +11,7 @@ from uuid import UUID
 
 from hookean_canvas.archive import Chunk, Type
 from hookean_canvas.archive.guids import BOOLEAN_TOGGLE, NAMES, PANEL, PARAMETERS, PYTHON3_SCRIPT, SCRIPT_LIBRARY
+from hookean_canvas.archive.parts import Part, sources
 from hookean_canvas.components import bundles, inline
 from hookean_canvas.definitions import containers
 from hookean_canvas.definitions.containers import Slot
@@ -189,6 +190,16 @@ def single(port: Chunk) -> Any:
         return None
     value = items[0].items[0].value
     return value if isinstance(value, (bool, int, float, str)) else None
+
+
+def constant(part: Part | None) -> Any:
+    """The truth, number or text that a toggle, or a panel or parameter without wires, gives; None of anything else."""
+    if part is None or part.container is None or sources(part.container):
+        return None
+    if part.guid == BOOLEAN_TOGGLE:
+        return part.container.value("ToggleValue")
+    text = part.container.value("UserText") if part.guid == PANEL else single(part.container)
+    return {"true": True, "false": False}.get(text.strip().lower(), text) if isinstance(text, str) else text
 
 
 def usual(slot: Slot, value: Any) -> bool:

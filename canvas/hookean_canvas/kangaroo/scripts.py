@@ -232,15 +232,48 @@ def at(item):
 places = [canvas.geometry.to_point(at(item)) for item in chosen or given]
 targets = [canvas.geometry.to_point(at(item)) for item in given] or places
 '''
-MATES = '''"""Three corners of each of two faces."""
+_JOINED = """    for points, place, frame in zip(columns, places, [frame_a] * %d + [frame_b] * %d):
+        points.append(canvas.geometry.to_point(place))
+        if frame is not None:
+            carriers.append(frame.Origin)
+            carried.append(points[-1])
+"""
+_MATCHED = """carriers, carried = [], []
+given = [canvas.listed(planes_) or [None], canvas.listed(planes_of_others_) or [None]]
+for one, other, frame_a, frame_b in zip(*canvas.matched(canvas.listed(%s), canvas.listed(_others), *given)):
+"""
+MATES = f'''"""Three corners of each of two faces: of their outlines, or round the origins of their planes."""
 
 from hookean_client import canvas
 
+
+def corners(face, frame):
+    """Where a plane is given, in it, counter-clockwise, as far from its origin as that is from the body's frame."""
+    if not hasattr(face, "XAxis"):
+        return canvas.geometry.straight(face)[:3]
+    o, x, y = ([v.X, v.Y, v.Z] for v in (face.Origin, face.XAxis, face.YAxis))
+    at = [frame.Origin.X, frame.Origin.Y, frame.Origin.Z] if frame is not None else o
+    size = sum((p - q) ** 2 for p, q in zip(o, at)) ** 0.5 or 1.0
+    ways = (1.0, 0.0), (-0.5, 0.75**0.5), (-0.5, -(0.75**0.5))
+    return [[p + size * (c * u + s * v) for p, u, v in zip(o, x, y)] for c, s in ways]
+
+
 columns = point_1, point_2, point_3, point_4, point_5, point_6 = [], [], [], [], [], []
-for one, other in zip(*canvas.matched(canvas.listed(_faces), canvas.listed(_others))):
-    for points, place in zip(columns, canvas.geometry.straight(one)[:3] + canvas.geometry.straight(other)[:3]):
-        points.append(canvas.geometry.to_point(place))
-'''
+{_MATCHED % "_faces"}    places = corners(one, frame_a) + corners(other, frame_b)
+{_JOINED % (3, 3)}'''
+AXLES = f'''"""Start and end of each of two axes."""
+
+from hookean_client import canvas
+
+columns = point_1, point_2, point_3, point_4 = [], [], [], []
+{_MATCHED % "_lines"}    one, other = canvas.geometry.straight(one), canvas.geometry.straight(other)
+    places = one[0], one[-1], other[0], other[-1]
+{_JOINED % (2, 2)}'''
+_PLANES = (
+    Slot("planes_", "Planes of their bodies", 1, "plane"),
+    Slot("planes_of_others_", "Planes of the bodies of others", 1, "plane"),
+)
+_CARRIED = (Slot("carriers", "Origins of the planes"), Slot("carried", "Points that move with these"))
 
 HELPERS = {
     "*mates": Recipe(
@@ -248,8 +281,16 @@ HELPERS = {
         "Mates",
         "Corners of pairs of faces",
         MATES,
-        (Slot("_faces", "Outlines of faces", 1), Slot("_others", "Outlines, one for each", 1)),
-        tuple(Slot(f"point_{i}", f"Point {i} of each pair") for i in (1, 2, 3, 4, 5, 6)),
+        (Slot("_faces", "Planes or outlines of faces", 1), Slot("_others", "Others, one for each", 1), *_PLANES),
+        (*(Slot(f"point_{i}", f"Point {i} of each pair") for i in (1, 2, 3, 4, 5, 6)), *_CARRIED),
+    ),
+    "*axles": Recipe(
+        "Axles",
+        "Axles",
+        "Ends of pairs of axes",
+        AXLES,
+        (Slot("_lines", "Axes", 1), Slot("_others", "Axes, one for each", 1), *_PLANES),
+        (*_POINTS, *_CARRIED),
     ),
     "*ends": Recipe("Ends", "Ends", "Ends of pairs of lines", ENDS, _PAIR, _POINTS),
     "*snap": Recipe(
@@ -359,6 +400,7 @@ HELPERS = {
 }
 TOLD = {
     "*mates": "a script for corners",
+    "*axles": "a script for ends",
     "*ends": "a script for ends",
     "*snap": "a script for ends and moments",
     "*clamp": "a script for ends and moments",

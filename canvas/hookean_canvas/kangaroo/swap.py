@@ -158,7 +158,7 @@ class Swapping:
         old = piece.outputs.get(slot.name)
         new = uuid5(id_, f"out {slot.name}")
         port = next((self.results[name] for name in (old or "").split("|") if name in self.results), None)
-        if port is None and len(piece.outputs) == 1 and old is not None and len(outputs(self.old)) == 1:
+        if port is None and len(piece.outputs) == 1 == len(outputs(self.old)) and old is not None and not piece.feeds:
             port = outputs(self.old)[0]  # its only output, whatever this version calls it
         if port is None:
             return new
@@ -326,10 +326,11 @@ class Swapping:
                 (w for k, w in self.swap.without.items() if k in map(key, names_of(port))), "it has no counterpart"
             )
             self.whole.because[found] = why
-            if set(self.swap.idle) & set(map(key, names_of(port))):
+            expected = next((v for k, v in self.swap.usual.items() if k in map(key, names_of(port))), make)
+            given = [make.constant(self.whole.streams.owner(one)) for one in sources(port)]
+            if set(self.swap.idle) & set(map(key, names_of(port))) or set(given) == {expected} != {None}:
                 self.whole.idle.add(found)
             value = make.single(port)
-            expected = next((v for k, v in self.swap.usual.items() if k in map(key, names_of(port))), make)
             if not sources(port) and make.stored(port) and expected is not None and value != expected:
                 self._gone(port, why, value)
         for port in outputs(self.old):

@@ -21,6 +21,7 @@ from hookean_canvas.archive import Chunk, Type
 from hookean_canvas.archive.guids import PANEL, SCRIPT_LIBRARY, TIMER
 from hookean_canvas.archive.parts import inputs, outputs, parts, sources
 from hookean_canvas.definitions import containers
+from hookean_canvas.kangaroo.carried import carry
 from hookean_canvas.kangaroo.make import put_object
 from hookean_canvas.kangaroo.plan import Importing
 from hookean_canvas.kangaroo.report import Report
@@ -49,6 +50,7 @@ def translate(root: Chunk, name: str = "definition") -> tuple[Chunk, Report]:
     report = Report(name)
     work = Importing(root, report)
     work.run()
+    carry(work)
     _rename(work)
     _count(work)
     _libraries(work)

@@ -11,6 +11,8 @@ from hookean_canvas.run.natives.declare import BRANCHES, Input, Output
 from hookean_canvas.run.trees import ITEM, LIST, TREE, Path, Run, Tree, runs
 
 Say = Callable[[str, str], None]
+EVERY = frozenset(["Collapsed", "Hidden", "IconDisplay", "IconOverride", "Locked", "Optional", "Selected"])
+"""Switches and numbers that any component has, without effect on what it does."""
 
 
 def native_for(node: Node) -> Native | None:
@@ -74,6 +76,19 @@ def _named(ports: Sequence[Port], declared: Sequence[Any]) -> list[tuple[Port | 
                 rest.remove(port)
                 found[k] = port
     return [(found.get(k), of) for k, of in enumerate(declared)] if not rest else None
+
+
+def ignored(node: Node, native: Native) -> list[str]:
+    """Sentences on what a person has chosen in the menu of a component that its stand-in does not look at: numbers and
+    switches in the file that are not 0, beside those that every component has."""
+    if node.container is None or native.sees:
+        return []
+    chosen = {item.name: item.value for item in node.container.items if type(item.value) in (bool, int) and item.value}
+    return [
+        f"its option {name} = {value} is not taken into account"
+        for name, value in chosen.items()
+        if name not in EVERY and not name.endswith("Count")
+    ]
 
 
 def _full(port: Any) -> str:

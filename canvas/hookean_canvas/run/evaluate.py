@@ -21,7 +21,7 @@ import rhino3dm
 from hookean.errors import InputError
 from hookean_canvas.archive.guids import BOOLEAN_TOGGLE, GRAPH_MAPPER, NUMBER_SLIDER, PANEL, VALUE_LIST
 from hookean_canvas.run import stand_in as untyped
-from hookean_canvas.run.components import inputs_of, native_for, outputs_of, run_native
+from hookean_canvas.run.components import ignored, inputs_of, native_for, outputs_of, run_native
 from hookean_canvas.run.graph import Graph, Node, Port
 from hookean_canvas.run.mapping import mapper_of
 from hookean_canvas.run.natives import Input, Native, Unfit, as_kind, is_inert
@@ -229,6 +229,8 @@ class Canvas:
 
         if native.remark:
             say("remark", native.remark)
+        for text in ignored(node, native):
+            say("warning", text)
         given: list[tuple[Input, Tree]] = []
         for port, of in inputs_of(node, native) or []:
             held = Tree.of(of.default) if port is None else self._given(node, port)

@@ -176,6 +176,9 @@ class Force(Model):
     # where a line of it is divided into n pieces, columns are multiplied by n to these powers; None: it is not divided
     pieces: ClassVar[dict[str, int] | None] = None
 
+    # other parts of a scene that its example comes to rest with, where it is no load and has no equilibrium by itself
+    example_beside: ClassVar[dict[str, Any]] = {}
+
     variant: ClassVar[bool] = False  # no kind of its own, but what some forces of a kind compile to (`compiled_as`)
 
     kernel: ClassVar[Callable[..., float] | None] = None

@@ -123,7 +123,6 @@ def floor_support(x, v, f, carried, free, mass, dt, parameters):  # type: ignore
             going = np.sqrt(going)
             held = parameters[p, 7] * press
             slows = parameters[p, 8] * press
-            holds = np.maximum(held, slows) if dt > 0.0 else held  # what cannot slide on stays
             moves = dt > 0.0 and slip > 0.0
             if moves and slip * mass[i] > (slows + shear) * dt:
                 for c in range(3):
@@ -137,7 +136,7 @@ def floor_support(x, v, f, carried, free, mass, dt, parameters):  # type: ignore
                     brake = -slows * (mass[i] * v[i, c] + dt * f[i, c]) * free[i, c] / going
                     f[i, c] += brake
                     carried[i, c] += brake
-            elif shear <= holds:
+            elif shear <= held:
                 for c in range(3):
                     carried[i, c] -= f[i, c] * free[i, c]
                     f[i, c] -= f[i, c] * free[i, c]
@@ -154,8 +153,8 @@ class Floor(Force):
     """A plane no particle passes: rebound with `restitution`, dry (Coulomb) friction.
 
     A particle that hits with normal speed u leaves with e u, so a ball dropped from h rises to h e^2; one that rests
-    is carried with N >= 0 and held sideways up to mu_s N, and slides against mu_k N. Classic Kangaroo's friction
-    numbers have no published formula; the friction coefficients here are ours.
+    is carried with N >= 0 and held sideways up to mu_s N, and slides against mu_k N, with mu_k <= mu_s. Classic
+    Kangaroo's friction numbers have no published formula; the friction coefficients here are ours.
     """
 
     kind: Literal["floor"] = "floor"
@@ -165,7 +164,9 @@ class Floor(Force):
     )
     restitution: float = Field(default=0.7, ge=0, le=1, description="Part of the speed kept in a rebound [-]")
     static_friction: float = Field(default=0.6, ge=0, le=1e12, description="mu_s [-]: holds up to mu_s N")
-    kinetic_friction: float = Field(default=0.5, ge=0, le=1e12, description="mu_k [-]: slides against mu_k N")
+    kinetic_friction: float = Field(
+        default=0.5, ge=0, le=1e12, description="mu_k [-]: slides against mu_k N; at most mu_s"
+    )
 
     formula: ClassVar[str] = "N ≥ 0, |T| ≤ μ N"
     role: ClassVar[Literal["internal", "load", "support"]] = "support"
@@ -178,6 +179,16 @@ class Floor(Force):
     def _has_a_side(self) -> Floor:
         if not np.linalg.norm(self.normal) > 0:
             raise fault("the normal must not be zero", "/normal")
+        return self
+
+    @model_validator(mode="after")
+    def _slides_with_less(self) -> Floor:
+        held, slides = self.static_friction, self.kinetic_friction
+        if slides > held and "kinetic_friction" in self.model_fields_set:
+            said = f"{slides:g} given, above the static friction, {held:g}; lower it, or raise static_friction"
+            raise fault(said, "/kinetic_friction")
+        if slides > held:  # the default, for a floor that is smoother than most
+            object.__setattr__(self, "kinetic_friction", held)
         return self
 
     def compile(self, places: Places) -> Block:

@@ -112,6 +112,9 @@ class Hinge(Force):
     arity: ClassVar[int] = 4
     linear: ClassVar[str] = "strength"
     outputs: ClassVar[dict[str, str]] = {"angle": "angle", "moment": "moment"}
+    example_beside: ClassVar[dict[str, Any]] = {
+        "forces": [{"kind": "springs", "particles": [[0, 1], [0, 2], [0, 3], [0, 4], [1, 2], [1, 3], [1, 4], [2, 4]]}]
+    }
     kernel: ClassVar[Any] = staticmethod(hinge_kernel)
     hessian: ClassVar[Any] = staticmethod(hinge_hessian)
     stressed: ClassVar[Any] = staticmethod(hinge_stressed)

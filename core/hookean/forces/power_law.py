@@ -93,6 +93,9 @@ class PowerLaw(LineForce):
 
     formula: ClassVar[str] = "E = -S d^(n+1)/(n + 1)"
     solid: ClassVar[bool] = False
+    example_beside: ClassVar[dict[str, Any]] = {
+        "forces": [{"kind": "springs", "particles": [[0, 1], [1, 2], [2, 3], [3, 0]]}]
+    }
     kernel: ClassVar[Any] = staticmethod(power_law_kernel)
     hessian: ClassVar[Any] = staticmethod(power_law_hessian)
 

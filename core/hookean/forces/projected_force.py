@@ -73,6 +73,9 @@ class ProjectedForce(LineForce):
     oriented: ClassVar[bool] = True
     creates: ClassVar[bool] = False
     solid: ClassVar[bool] = False
+    example_beside: ClassVar[dict[str, Any]] = {
+        "forces": [{"kind": "anchor_spring", "particles": [0, 1, 2, 3], "strength": 100.0}]
+    }
     kernel: ClassVar[Any] = staticmethod(projected_force_kernel)
     hessian: ClassVar[Any] = staticmethod(projected_force_hessian)
 

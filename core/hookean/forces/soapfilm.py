@@ -183,6 +183,7 @@ class SoapFilm(Force):
     is_film: ClassVar[bool] = True
     on_film: ClassVar[OnFilm] = "across"
     outputs: ClassVar[dict[str, str]] = {"area": "length^2"}
+    example_beside: ClassVar[dict[str, Any]] = {"anchors": [{"particles": [0, 1, 2, 3, 5, 6, 7, 8]}]}
     kernel: ClassVar[Any] = staticmethod(soapfilm_kernel)
     hessian: ClassVar[Any] = staticmethod(soapfilm_hessian)
     example_faces: ClassVar[list[list[int]]] = [[0, 1, 4, 3], [1, 2, 5, 4], [3, 4, 7, 6], [4, 5, 8], [4, 8, 7]]

@@ -60,6 +60,9 @@ class Thrust(Force):
     arity: ClassVar[int] = 2
     linear: ClassVar[str] = "thrust"
     outputs: ClassVar[dict[str, str]] = {"force": "force"}
+    example_beside: ClassVar[dict[str, Any]] = {
+        "forces": [{"kind": "anchor_spring", "particles": [0, 1, 2, 3], "strength": 100.0}]
+    }
     kernel: ClassVar[Any] = staticmethod(thrust_kernel)
     hessian: ClassVar[Any] = staticmethod(thrust_hessian)
 

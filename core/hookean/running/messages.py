@@ -64,7 +64,10 @@ def _blame(watch: Watch, system: System) -> str:
     if said := _adrift(system, watch.found):
         return said
     if free:
-        return f"Nothing supports {_called(system, watch.found, part)}: add anchors"
+        return (
+            f"Only the forces between its particles act on {_called(system, watch.found, part)}, and no shape "
+            "was found that balances them: add springs that keep distances, or anchors"
+        )
     if said := _overloaded(system, watch.good, watch.size):
         return said
     if watch.method.physical:

@@ -14,6 +14,7 @@ from pydantic.json_schema import GenerateJsonSchema
 
 from hookean.forces import KINDS, Force
 from hookean.forces.base import PLACES
+from hookean.scene.examples import example_scene
 from hookean.scene.scene import Scene
 
 _UNIT = re.compile(r"\[([^\]]*)\]")
@@ -32,7 +33,7 @@ def entry(cls: type[Force], described: dict[str, Any] | None = None) -> dict[str
     `kind, title, summary, description, formula, role, conservative, damped, remembers, particles_per_element,
     places` (the fields of which exactly one gives its place), `everywhere` (none of them: on all particles),
     `fields` (name, description, unit, type, required, default, bounds, choices), `outputs` (name and unit of every
-    column of a result) and `example`, a force of this kind for a scene.
+    column of a result), `example`, a force of this kind, and `scene`, a whole scene with it that comes to rest.
     """
     described = described or schema()["$defs"][cls.__name__]
     words = (cls.__doc__ or "").strip()
@@ -57,6 +58,7 @@ def entry(cls: type[Force], described: dict[str, Any] | None = None) -> dict[str
         ],
         "outputs": [{"name": name, "unit": unit or "-"} for name, unit in cls.outputs.items()],
         "example": _example(cls),
+        "scene": _scene(cls),
     }
 
 
@@ -195,6 +197,13 @@ def _example(cls: type[Force]) -> dict[str, Any] | None:
         return None
     given = force.model_dump(mode="json", exclude_unset=True)
     return {"kind": cls.kind_name, **given}
+
+
+def _scene(cls: type[Force]) -> dict[str, Any] | None:
+    try:
+        return example_scene(cls)
+    except TypeError:
+        return None
 
 
 def _cell(text: str) -> str:

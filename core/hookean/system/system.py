@@ -296,7 +296,8 @@ def compile(scene: Scene, *, empty: bool = False) -> System:
     if not len(welded.x) and not empty:
         said = "the scene has no particles; give particles, or a force with lines or a mesh"
         if scene.forces:
-            said = "the scene has no particles, and loads and contacts alone create none; give particles, or springs"
+            kinds = ", ".join(dict.fromkeys(force.kind_name for force in scene.forces))
+            said = f"the scene has no particles, and {kinds} alone create none; give their coordinates, or springs"
         raise InputError("/particles", said)
     later = case_loads(scene)
     given = [(i, force) for i, force in enumerate(scene.forces) if i not in later]

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
-from itertools import cycle, islice
+from collections.abc import Callable, Iterable, Sequence
+from itertools import cycle, islice, pairwise, product
 from typing import Any
 
 import numpy as np
@@ -304,9 +304,28 @@ def shortest_list(*lists: Values) -> tuple[Values, ...]:
     return tuple(values[: min(map(len, lists))] for values in lists)
 
 
+CROSSED: tuple[Callable[[tuple[int, ...]], bool], ...] = (
+    lambda places: True,
+    lambda places: len(set(places)) > 1,
+    lambda places: len(set(places)) == len(places),
+    lambda places: all(i >= j for i, j in pairwise(places)),
+    lambda places: all(i <= j for i, j in pairwise(places)),
+    lambda places: all(i > j for i, j in pairwise(places)),
+    lambda places: all(i < j for i, j in pairwise(places)),
+)
+"""Which combinations a Cross Reference gives, by the numbers of their items in the lists: all, without those of equal
+numbers, without those with any two equal, the lower and the upper triangle, and both without their diagonals."""
+
+
 @native("36947590-f0cb-4807-a8f9-9c90c9b20621", "Cross Reference", "CrossRef",
-        "List (A): any list; List (B): any list", "List (A): list; List (B): list")  # fmt: skip
-def cross_reference(first: Values, second: Values) -> tuple[Values, Values]:
-    """All pairs of the items of two lists, the second list in full for each item of the first."""
-    bounded(len(first) * len(second))
-    return [a for a in first for _ in second], second * len(first)
+        "List (A): any list; List (B): any list ...", "List (A): list; List (B): list ...", sees=True)  # fmt: skip
+def cross_reference(*lists: Values, node: Any = None) -> tuple[Values, ...]:
+    """Combinations of the items of lists, the last list in full for each item of those before; all, or those of the
+    mode that is chosen in its menu."""
+    bounded(math.prod(map(len, lists)))
+    mode = node.container.value("CrossMode", default=0) if node is not None else 0
+    if not 0 <= mode < len(CROSSED):
+        raise Unfit(f"unknown mode {mode}; 0 to {len(CROSSED) - 1} are known")
+    kept = CROSSED[mode]
+    chosen = [places for places in product(*(range(len(values)) for values in lists)) if kept(places)]
+    return tuple([values[places[i]] for places in chosen] for i, values in enumerate(lists))
