@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
-from uuid import uuid5
+from uuid import UUID, uuid5
 
 from hookean_canvas.archive import Chunk, Type
 from hookean_canvas.archive.guids import PYTHON3_SCRIPT
@@ -60,5 +60,6 @@ def _insert(work: Importing, bodies: Chunk, joining: list[Chunk]) -> None:
     work.space.put(chunk, work.space.free(x + wide + 40.0, y, *box))
 
 
-def _output(chunk: Chunk, name: str) -> object:
-    return next(port.value("InstanceGuid") for port in outputs(chunk) if port.value("Name") == name)
+def _output(chunk: Chunk, name: str) -> UUID:
+    ids = (port.value("InstanceGuid") for port in outputs(chunk) if port.value("Name") == name)
+    return next(id_ for id_ in ids if isinstance(id_, UUID))
