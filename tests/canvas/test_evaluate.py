@@ -19,6 +19,8 @@ from hookean_canvas.run import graph
 from hookean_canvas.run.checking import check, number, shown
 from hookean_canvas.run.evaluate import Canvas, Outcome
 from hookean_canvas.run.natives import BY_NAME, Unfit, as_kind
+from hookean_canvas.run.scripts import handed, tree_of
+from hookean_canvas.run.stand_in import GH_Path
 from hookean_canvas.run.trees import FLATTEN, GRAFT, ITEM, LIST, TREE, Tree, modified, path_of, runs, text_of
 from serving import HANG
 
@@ -50,6 +52,25 @@ def test_branches_are_matched_by_their_order_and_results_go_to_the_larger_tree()
     assert [(run.path, run.values) for run in found] == [
         ((0, 0), [10, 1]), ((0, 0), [10, 2]), ((0, 1), [10, 3]), ((1,), [10, 4]),
     ]  # fmt: skip
+
+
+def test_a_tree_of_many_branches_is_handed_to_scripts_and_back_in_steps_that_grow_with_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    """Each branch is looked up a few times, however many others there are: a grafted mesh has thousands."""
+    looked = 0
+    plain = GH_Path.__str__
+
+    def counted(path: Any) -> str:
+        nonlocal looked
+        looked += 1
+        return str(plain(path))
+
+    monkeypatch.setattr(GH_Path, "__str__", counted)
+    branches = 400
+    tree = Tree({(0, i): [i, -i] for i in reversed(range(branches))})
+    assert tree_of(handed(tree)) == tree
+    assert looked <= 10 * branches
 
 
 def test_a_list_input_gets_a_branch_at_once_and_a_tree_input_everything() -> None:

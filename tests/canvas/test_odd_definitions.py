@@ -22,6 +22,7 @@ from hookean_canvas.archive import Chunk, Item, Type, guids
 from hookean_canvas.command import app
 from hookean_canvas.definitions import containers
 from hookean_canvas.definitions.write import Definition
+from hookean_canvas.inspect import lint
 from hookean_canvas.kangaroo.streams import copied
 from hookean_canvas.run import graph
 from hookean_canvas.run.evaluate import Canvas
@@ -138,6 +139,12 @@ def test_a_definition_without_places_and_a_picture_that_cannot_be_written_are_on
     for target, words in [("a.txt", "give a name that ends in .png"), ("none/a.png", "cannot be written")]:
         found = CliRunner().invoke(app, ["draw", str(file), "-o", str(tmp_path / target)])
         assert (found.exit_code, found.stderr.count("\n")) == (2, 1) and words in found.stderr
+
+
+def test_a_parameter_that_was_taken_out_of_a_component_has_the_name_of_its_input() -> None:
+    root = definition()
+    add_object(objects(root), guids.PARAMETERS["Integer"], "Width count", 900)
+    assert not [fault for fault in lint.faults(root) if "Width count" in fault and "is that of" in fault]
 
 
 def test_objects_without_a_place_are_named(tmp_path: Path) -> None:

@@ -216,6 +216,7 @@ NAMES: dict[UUID, tuple[str, ...]] = {
 """Component and parameter ids with the names files have for them, the present one first."""
 PARAMETERS: dict[str, UUID] = {names[0]: guid for guid, names in reversed(_table(_PARAMETERS).items())}
 """The id of a floating parameter by its present name."""
+RENAMED |= set(PARAMETERS.values())  # one taken out of a component has the name of its input
 
 _HINT_NAMES = {guid: name for hints in (HINTS, HINTS_IRONPYTHON) for name, guid in hints.items()}
 

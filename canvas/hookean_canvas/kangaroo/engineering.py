@@ -162,7 +162,7 @@ ENGINEERING: dict[str, Swap] = {
 GOALS = frozenset(["bar", "cable", "rod", "beam", "load", "support", "support6dof", "pressure", "meshselfweight"])
 """Those that flow into a solver."""
 
-_DRAWS = "it draws in Rhino's viewport, and its numbers go on coming; the Engine draws forces and reactions by itself"
+_DRAWS = "it draws in Rhino's viewport, and its numbers still arrive; the Engine draws forces and reactions by itself"
 _MESHES = "it takes a mesh of another plug-in, Plankton; Area Weight, Pressure and Wind Pressure share areas of a mesh"
 REASONS: dict[str, str] = {
     **dict.fromkeys(

@@ -372,17 +372,17 @@ class DataTree(_Generic):
     """Lists of items by paths, which are kept in their order."""
 
     def __init__(self):
-        self._items = []
+        self._items = {}  # lists by paths: trees of thousands of branches are filled item by item
 
     @property
     def Paths(self):
         """Its paths, sorted as Grasshopper does."""
-        return sorted((path for path, _ in self._items), key=lambda path: path.Indices)
+        return sorted(self._items, key=lambda path: path.Indices)
 
     @property
     def Branches(self):
         """Its lists in the order of the paths."""
-        return [self.Branch(path) for path in self.Paths]
+        return [self._items[path] for path in self.Paths]
 
     @property
     def BranchCount(self):
@@ -392,30 +392,29 @@ class DataTree(_Generic):
     @property
     def DataCount(self):
         """How many items."""
-        return sum(len(items) for _, items in self._items)
+        return sum(len(items) for items in self._items.values())
 
     def Branch(self, *path):
         """The list of a path, or of a number of one."""
         if len(path) == 1 and isinstance(path[0], int):
             path = (self.Paths[path[0]],)
-        wanted = path[0] if isinstance(path[0], GH_Path) else GH_Path(*path)
-        return next(items for known, items in self._items if known == wanted)
+        return self._items[path[0] if isinstance(path[0], GH_Path) else GH_Path(*path)]
 
     def EnsurePath(self, *path):
         """Make a path that there is none of yet."""
         wanted = path[0] if isinstance(path[0], GH_Path) else GH_Path(*path)
-        if not any(known == wanted for known, _ in self._items):
-            self._items.append((wanted, []))
+        self._items.setdefault(wanted, [])
         return wanted
 
     def Add(self, item, path=None):
         """Put an item at the end of a path."""
-        self.Branch(self.EnsurePath(path or GH_Path(0))).append(item)
+        self._items[self.EnsurePath(path or GH_Path(0))].append(item)
 
     def AddRange(self, items, path=None):
-        """Put items at the end of a path."""
-        for item in items:
-            self.Add(item, path)
+        """Put items at the end of a path; one that there is none of yet is made for items alone."""
+        given = list(items)
+        if given:
+            self._items[self.EnsurePath(path or GH_Path(0))].extend(given)
 
     def AllData(self):
         """All items."""
