@@ -167,8 +167,13 @@ def test_the_link_shows_the_same_scene(membrane: Studio, open_studio: Opened):
 
 
 def test_what_is_saved_reopens_as_the_same_model(membrane: Studio):
-    """Save gives one file: opened here, it has the same scene, shape to the bit, and view; Python reads the same."""
+    """Save gives one file: opened here, it has the same scene, shape to the bit, view, and a group of 20,000 numbers;
+    Python reads the same."""
     page, service = membrane.page, membrane.service
+    many = np.random.default_rng(5).integers(0, 441, 20_000).tolist()
+    page.evaluate("(many) => localStorage.setItem('hookean-groups-9.24-membrane', many)", json.dumps({"many": many}))
+    page.reload()
+    membrane.drawing()
     membrane.press("Top")
     page.get_by_role("radio", name="Strain").check()
     seen = membrane.place(0)
@@ -185,6 +190,9 @@ def test_what_is_saved_reopens_as_the_same_model(membrane: Studio):
     assert np.abs(np.subtract(membrane.place(0), seen)).max() < 1.0  # CSS pixels
     assert page.get_by_role("radio", name="Strain").is_checked()
     assert page.get_by_role("heading", name="roof").is_visible()
+    assert json.loads(page.evaluate("(key) => localStorage.getItem('hookean-groups-' + key)", membrane.key)) == {
+        "many": many
+    }
     named = saved.with_suffix(".hookean")
     named.write_bytes(saved.read_bytes())
     assert open_scene(named).canonical == Scene.read(before).canonical

@@ -35,7 +35,7 @@ export function tell(sentence: string, details: string[] = []): void {
 /** Show that a file is open, with the notes on it; what the page itself shows with a repair is left out. */
 export function tellOpen(name: string, warnings: string[] = []): void {
   const notes = warnings.filter((sentence) => sentence !== "nothing is held");
-  if (notes.length) tell(`${name} is open. Notes on the file:`, notes);
+  if (notes.length) tell(`${name} is open. Notes on what was opened:`, notes);
 }
 
 export const quiet = () => (notice.value = null);
