@@ -26,9 +26,10 @@ export async function keepLooked(key: string, told: string): Promise<void> {
     // an address replaces nothing that this browser keeps
     if (!guest && !isKept(key)) keepDesign(key, view.design);
     if (!guest && view.recipe && !keptRecipe(key)) keepRecipe(key, view.recipe);
-    if (note) tellOpen("The session", [note]);
+    if (note) tellOpen("The session", [], [note]);
   } catch {
     // the rest of the address still names the session
-    tellOpen("The session", ["The view in the address is incomplete and was left out. Copy the whole link to see it."]);
+    const note = "The view in the address is incomplete and was left out. Copy the whole link to see it.";
+    tellOpen("The session", [], [note]);
   }
 }

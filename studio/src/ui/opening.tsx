@@ -27,7 +27,7 @@ async function openFile(file: File): Promise<void> {
     if (reel) await keepReel(made.key, reel);
     const note = keepSeen(made.key, await viewOf(file), made.particles);
     go(made.key);
-    tellOpen(file.name, [...(made.warnings ?? []), ...(note ? [note] : [])]);
+    tellOpen(file.name, made.warnings, note ? [note] : []);
   } catch (error) {
     met(error);
     refuse(error, `${file.name} was not opened. `);
