@@ -74,6 +74,7 @@ def test_stl_glb_and_svg_have_the_form_that_is_seen(membrane: Studio):
     places, *rest = told["bufferViews"]
     found = np.frombuffer(binary, "<f4", places["byteLength"] // 4).reshape(-1, 3)
     assert np.abs(found - drawn).max() < 1e-5 and told["nodes"][0]["scale"] == [1, 1, 1]
+    assert told["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] == 0  # else viewers show dark metal
     assert all(np.frombuffer(binary, "<u4", v["byteLength"] // 4, v["byteOffset"]).max() < len(drawn) for v in rest)
 
     svg = ElementTree.parse(taken(membrane, "SVG", ".svg")).getroot()
