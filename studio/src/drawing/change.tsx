@@ -49,9 +49,11 @@ export function deleted(studio: Studio): boolean {
   if (!topology) return false;
   const { particles, springs, faces } = chosenOf(studio, topology);
   const count = Object.values(faces).flat().length;
-  if (particles.length) void draw(studio, { delete: { particles } }, `${counted(particles.length, "particle")} deleted`);
-  else if (springs.length) void draw(studio, { delete: { springs } }, `${counted(springs.length, "spring")} deleted`);
-  else if (count) void draw(studio, { delete: { faces } }, `${counted(count, "face")} deleted`);
+  const away = (edit: Draw["delete"], number: number, what: string) =>
+    void draw(studio, { delete: edit }, `${counted(number, what)} deleted`);
+  if (particles.length) away({ particles }, particles.length, "particle");
+  else if (springs.length) away({ springs }, springs.length, "spring");
+  else if (count) away({ faces }, count, "face");
   return particles.length + springs.length + count > 0;
 }
 

@@ -1,4 +1,4 @@
-// A view from a file or an address, checked: any program may have written it. What is invalid is left out and named.
+// A view from a file or an address, which any program may have written: what is invalid is left out and named.
 import { placed } from "../view/memory";
 import { steps, summed } from "../view/steps";
 import type { Groups, Kept } from "../view/types";
@@ -8,33 +8,36 @@ import { chosenOf } from "./surfacing";
 const COLOURINGS = ["force", "strain", "plain", "given"];
 const SCALES = ["auto", "even", "log"];
 
+type Told = Record<string, unknown>;
+
 /** What each part is called, and whether a value is valid for a model with so many particles. */
-const PARTS: { [name in keyof Kept]-?: [string, (told: any, particles: number) => boolean] } = {
+const PARTS: { [name in keyof Kept]-?: [string, (told: unknown, particles: number) => boolean] } = {
   eye: ["camera", (told) => Array.isArray(told) && placed(told) !== null],
-  colouring: ["colouring", (told) => COLOURINGS.includes(told)],
-  scale: ["colour scale", (told) => SCALES.includes(told?.kind) && isEnd(told.low) && isEnd(told.high)],
+  colouring: ["colouring", (told) => COLOURINGS.includes(String(told))],
+  scale: ["colour scale", (told) => isOf(told, () => true) && isScale(told as Told)],
   groups: ["groups", (told, particles) => isOf(told, (group) => isSet(group, particles))],
   groupColours: ["colours of groups", (told) => isOf(told, (colour) => /^#[0-9a-f]{6}$/i.test(String(colour)))],
   layers: ["layers", (told) => isOf(told, (is) => typeof is === "boolean")],
-  picked: ["picked element", (told, particles) => isPicked(told, particles)],
+  picked: ["picked element", (told, particles) => isOf(told, () => true) && isPicked(told as Told, particles)],
   marked: ["selection", isSet],
   surface: ["surface", (told) => isOf(told, () => true) && chosenOf(told) !== null],
   design: ["design problem", isProblem],
-  recipe: ["recipe", (told) => typeof told?.file === "string" && typeof told.text === "string"],
+  recipe: ["recipe", (told) => isOf(told, (text) => typeof text === "string") && isRecipe(told as Told)],
 };
 
 /** What is valid of a view, and a sentence on the rest; "" for nothing. */
 export function checked(told: unknown, from: string, particles = Infinity): { view: Kept; note: string } {
   const view: Partial<Record<keyof Kept, unknown>> = {};
   const wrong: string[] = [];
-  const given = isOf(told, () => true) ? unstepped(told as Record<string, unknown>) : {};
+  const given = isOf(told, () => true) ? unstepped(told as Told) : {};
   for (const [name, [said, is]] of Object.entries(PARTS) as [keyof Kept, (typeof PARTS)[keyof Kept]][]) {
     const value = given[name];
     if (value === undefined || value === null) continue;
     if (is(value, particles)) view[name] = value;
     else wrong.push(said);
   }
-  const note = `The view in the ${from} has invalid values, which were left out: ${wrong.join(", ")}. The model is whole.`;
+  const names = wrong.join(", ");
+  const note = `The view in the ${from} has invalid values, which were left out: ${names}. The model is whole.`;
   return { view: view as Kept, note: wrong.length ? note : "" };
 }
 
@@ -45,11 +48,14 @@ export function stepped(view: Kept): object {
   return { ...rest, steps: { ...(kept && { groups: kept }), ...(marked && { marked: steps(marked) }) } };
 }
 
-function unstepped({ steps: told, ...view }: Record<string, unknown>): Record<string, unknown> {
-  const { groups, marked } = (told ?? {}) as { groups?: unknown; marked?: unknown };
+function unstepped({ steps: told, ...view }: Told): Told {
+  const { groups, marked } = (told ?? {}) as Told;
   const sums = (set: unknown) => (Array.isArray(set) ? summed(set as number[]) : set);
-  const whole = isOf(groups, () => true) ? Object.entries(groups as Groups).map(([name, set]) => [name, sums(set)]) : null;
-  return { ...view, ...(whole && { groups: Object.fromEntries(whole) }), ...(marked !== undefined && { marked: sums(marked) }) };
+  const found: Told = { ...view };
+  if (isOf(groups, () => true))
+    found["groups"] = Object.fromEntries(Object.entries(groups as Groups).map(([name, set]) => [name, sums(set)]));
+  if (marked !== undefined) found["marked"] = sums(marked);
+  return found;
 }
 
 const isOf = (told: unknown, is: (value: unknown) => boolean): boolean =>
@@ -59,9 +65,10 @@ function isSet(told: unknown, particles: number): boolean {
   return Array.isArray(told) && told.every((one) => Number.isInteger(one) && one >= 0 && one < particles);
 }
 
-function isPicked(told: { kind?: unknown; index?: unknown }, particles: number): boolean {
-  if (told.kind === "particle") return isSet([told.index], particles);
-  return told.kind === "spring" && isSet([told.index], Infinity);
+function isPicked({ kind, index }: Told, particles: number): boolean {
+  return isSet([index], kind === "particle" ? particles : Infinity) && (kind === "particle" || kind === "spring");
 }
 
+const isScale = ({ kind, low, high }: Told) => SCALES.includes(String(kind)) && isEnd(low) && isEnd(high);
 const isEnd = (told: unknown) => told === null || told === undefined || Number.isFinite(told);
+const isRecipe = ({ file, text }: Told) => file !== undefined && text !== undefined;

@@ -1,5 +1,5 @@
-// How a session is looked at, in a file, or in an address: of a read-only link, or of a saved model that the command has
-// opened.
+// How a session is looked at, in a file, or in an address: of a read-only link, or of a saved model that the command
+// has opened.
 import { keepView } from "../view/kept";
 import { isPacked, unpacked } from "../view/packed";
 import { guest } from "../guest";

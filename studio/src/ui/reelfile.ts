@@ -75,7 +75,8 @@ function read(data: ArrayBuffer): Reel {
 export async function completed(file: Blob, view: Kept | null, reel: Reel | null): Promise<Blob> {
   if (!view && !reel) return file;
   const seen = view && new TextEncoder().encode(JSON.stringify(view));
-  return changed(file, (parts) => ({ ...parts, ...(seen && { [VIEW]: seen }), ...(reel && { [PART]: written(reel) }) }));
+  const more = { ...(seen && { [VIEW]: seen }), ...(reel && { [PART]: written(reel) }) };
+  return changed(file, (parts) => ({ ...parts, ...more }));
 }
 
 /** What was recorded in a file, and the file without it, as the service needs it. */
