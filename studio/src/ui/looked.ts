@@ -18,7 +18,7 @@ export function keepSeen(key: string, told: unknown, particles: number): string 
   return note;
 }
 
-/** The same from an address, plain or packed; one that was cut shows the session as without it, and says so. */
+/** The same from an address, plain or packed; one that was cut shows the session as without it, with a sentence. */
 export async function keepLooked(key: string, told: string): Promise<void> {
   try {
     const { view, note } = checked(JSON.parse(isPacked(told) ? await unpacked(told) : told), "address");
