@@ -19,7 +19,7 @@ import zipfile
 import zlib
 from contextlib import suppress
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeGuard
 from urllib.parse import quote
 
 import typer
@@ -202,16 +202,16 @@ def view_in(data: bytes) -> tuple[str, str]:
 
 def stepped(view: dict[str, Any]) -> dict[str, Any]:
     """A view with its sets of particles as differences of their numbers, which compress well."""
-    sets = {name: view.get(name) for name in ("groups", "marked")}
+    groups, marked = view.get("groups"), view.get("marked")
     steps: dict[str, Any] = {}
-    if isinstance(groups := sets["groups"], dict) and all(map(_is_set, groups.values())):
+    if isinstance(groups, dict) and all(map(_is_set, groups.values())):
         steps["groups"] = {name: _steps(group) for name, group in groups.items()}
-    if _is_set(marked := sets["marked"]):
+    if _is_set(marked):
         steps["marked"] = _steps(marked)
     return {**{name: value for name, value in view.items() if name not in steps}, "steps": steps} if steps else view
 
 
-def _is_set(value: Any) -> bool:
+def _is_set(value: Any) -> TypeGuard[list[int]]:
     return isinstance(value, list) and all(type(one) is int for one in value)
 
 
