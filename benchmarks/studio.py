@@ -149,7 +149,7 @@ def drag(watched: Watched, playing: bool, count: int) -> None:
         if step == 2:  # the first one takes hold
             read, sent, all_of_it = len(watched.read), len(watched.sent), before
         page.mouse.move(at["x"] + 6 + 2 * step, at["y"] - step)
-        page.wait_for_function("(before) => window.hookean.stats.revisionDrawn > before", arg=revision, polling=4)
+        page.wait_for_function("(before) => window.hookean.stats.revisionDrawn > before", arg=revision, polling=16)
         waits.append(1000 * (time.monotonic() - began))
         after = watched.processor()
         used.append({name: after[name] - before[name] for name in after})

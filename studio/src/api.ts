@@ -120,14 +120,9 @@ export async function draft(file: File, choices?: Choices): Promise<Draft> {
 
 export type Format = "hookean" | "scene" | "3dm" | "obj" | "compas" | "csv" | "npz";
 
-/** The session as a file, with a view as JSON or packed, and sentences on what that does not hold. */
-export async function exported(
-  key: string,
-  format: Format,
-  view = "{}",
-): Promise<{ blob: Blob; notes: string[] }> {
-  const looked = format === "hookean" ? `&view=${encodeURIComponent(view)}` : "";
-  const answer = await ask(format === "scene" ? `${at(key)}/scene` : `${at(key)}/state?format=${format}${looked}`);
+/** The session as a file, and sentences on what that does not hold. */
+export async function exported(key: string, format: Format): Promise<{ blob: Blob; notes: string[] }> {
+  const answer = await ask(format === "scene" ? `${at(key)}/scene` : `${at(key)}/state?format=${format}`);
   const notes = JSON.parse(answer.headers.get("hookean-warnings") ?? "[]") as string[];
   return { blob: await answer.blob(), notes };
 }

@@ -32,6 +32,9 @@ const [FLOATS, WHOLE, LINES, TRIANGLES] = [5126, 5125, 1, 4];
 /** z up to y up. */
 const TURN = [-Math.SQRT1_2, 0, 0, Math.SQRT1_2];
 
+/** Light and dull: viewers show what has no material as metal. */
+const CLOTH = { baseColorFactor: [0.72, 0.78, 0.84, 1], metallicFactor: 0, roughnessFactor: 0.8 };
+
 /** Faces and lines as binary glTF 2.0, in metres and with y up, as that has them. */
 export function glb(form: Form, positions: Float32Array, unit: string): Blob {
   const lines = Uint32Array.from([...form.springs, ...form.edges, ...form.strokes]);
@@ -49,7 +52,7 @@ export function glb(form: Form, positions: Float32Array, unit: string): Blob {
     scenes: [{ nodes: [0] }],
     nodes: [{ mesh: 0, rotation: TURN, scale: [scale, scale, scale] }],
     meshes: [{ primitives }],
-    materials: [{ doubleSided: true }],
+    materials: [{ doubleSided: true, pbrMetallicRoughness: CLOTH }],
     buffers: [{ byteLength: parts.reduce((sum, part) => sum + part.byteLength, 0) }],
     bufferViews: parts
       .map((part, i) => ({ buffer: 0, byteOffset: starts[i], byteLength: part.byteLength }))

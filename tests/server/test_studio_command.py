@@ -33,16 +33,26 @@ SHEET = "".join(f"v {i} {j} 0\n" for i in range(3) for j in range(3)) + "f 1 4 5
 
 
 def test_a_saved_model_leads_to_the_view_it_was_saved_with() -> None:
-    """The address has the view of the file, whatever is in it; of other files, and of a view too long for an address,
-    it has none."""
-    view = {"eye": [0.5, 1.0], "groups": {"rim & seam": [1, 2]}, "colouring": "strain"}
-    simulation = Simulation(Scene.read(CABLE))
-    found = view_in(project.write(project.Project(simulation, view)))
-    assert json.loads(unpacked(parse_qs(f"s=a{found}")["v"][0], "view")) == view
-    assert view_in(project.write(project.Project(simulation, {}))) == ""
-    noise = np.random.default_rng(7).integers(0, 10**9, LONGEST_VIEW // 4).tolist()  # about 4 bytes each, compressed
-    assert view_in(project.write(project.Project(simulation, {"marked": noise}))) == ""
-    assert view_in(b"v 0 0 0") == view_in(b"PK\x03\x04 damaged") == ""
+    """The address has the view of the file, whatever is in it, with sets of particles as differences: half of 60,000
+    particles, chosen at random, fit into it. Of other files it has none, and none of a view that is too long, with a
+    sentence."""
+
+    def told(view: dict[str, object]) -> tuple[object, str]:
+        found, note = view_in(project.write(project.Project(simulation, view)))
+        return found and json.loads(unpacked(parse_qs(f"s=a{found}")["v"][0], "view")), note
+
+    simulation, random = Simulation(Scene.read(CABLE)), np.random.default_rng(7)
+    view = {"eye": [0.5, 1.0], "colouring": "strain", "layers": 3}
+    steps = {"groups": {"rim & seam": [5, -3, 7]}, "marked": [4]}
+    assert told({**view, "groups": {"rim & seam": [5, 2, 9]}, "marked": [4]}) == ({**view, "steps": steps}, "")
+    assert told({**view, "groups": "all", "marked": ["x"]}) == ({**view, "groups": "all", "marked": ["x"]}, "")
+    half = np.flatnonzero(random.random(60_000) < 0.5).tolist()
+    assert told({"groups": {"half": half}})[0]
+    assert told({}) == ("", "")
+    noise = random.integers(0, 10**9, LONGEST_VIEW // 4).tolist()  # about 4 bytes each, compressed
+    empty, note = told({"marked": noise})
+    assert empty == "" and "too long for an address" in note
+    assert view_in(b"v 0 0 0") == view_in(b"PK\x03\x04 damaged") == ("", "")
 
 
 @pytest.fixture

@@ -124,9 +124,16 @@ def test_lines_are_drawn_changed_and_undone(studio: Studio) -> None:
     enter(studio, page.get_by_label("Extrude by z"), "2")
     studio.press("Extrude edges")
     drawn(studio, 8)
+    page.get_by_text("Select several", exact=True).click()
+    studio.press("All")
+    page.get_by_label("Name of the group").fill("all")
+    studio.press("Keep as a group")
     enter(studio, page.get_by_label("Particle number"), "5")
-    studio.press("Delete particles")
+    page.locator("canvas").first.focus()
+    page.keyboard.press("Delete")
     drawn(studio, 7)
+    groups = page.get_by_role("list", name="Groups")
+    groups.get_by_text("7 particles").wait_for()
     rope = {"kind": "springs", "name": "drawn lines"}
     twin = Simulation(Scene.read({"units": {"force": "kN"}}))
     for edit in (
@@ -144,6 +151,7 @@ def test_lines_are_drawn_changed_and_undone(studio: Studio) -> None:
     for particles in (8, 6, 4, 3):
         studio.press("Undo")
         drawn(studio, particles)
+        groups.get_by_text(f"{particles} particles").wait_for()
     for undone in (2, 1, 0):
         studio.press("Undo")
         studio.until(lambda undone=undone: lines(studio) == undone, what=f"{undone} lines")

@@ -75,6 +75,7 @@ def test_stl_glb_and_svg_have_the_form_that_is_seen(membrane: Studio):
     places, *rest = told["bufferViews"]
     found = np.frombuffer(binary, "<f4", places["byteLength"] // 4).reshape(-1, 3)
     assert np.abs(found - drawn).max() < 1e-5 and told["nodes"][0]["scale"] == [1, 1, 1]
+    assert told["materials"][0]["pbrMetallicRoughness"]["metallicFactor"] == 0  # else viewers show dark metal
     assert all(np.frombuffer(binary, "<u4", v["byteLength"] // 4, v["byteOffset"]).max() < len(drawn) for v in rest)
 
     svg = ElementTree.parse(taken(membrane, "SVG", ".svg")).getroot()
@@ -168,8 +169,13 @@ def test_the_link_shows_the_same_scene(membrane: Studio, open_studio: Opened):
 
 
 def test_what_is_saved_reopens_as_the_same_model(membrane: Studio):
-    """Save gives one file: opened here, it has the same scene, shape to the bit, and view; Python reads the same."""
+    """Save gives one file: opened here, it has the same scene, shape to the bit, view, and a group of 20,000 numbers;
+    Python reads the same."""
     page, service = membrane.page, membrane.service
+    many = np.random.default_rng(5).integers(0, 441, 20_000).tolist()
+    page.evaluate("(many) => localStorage.setItem('hookean-groups-9.24-membrane', many)", json.dumps({"many": many}))
+    page.reload()
+    membrane.drawing()
     membrane.press("Top")
     page.get_by_role("radio", name="Strain").check()
     seen = membrane.place(0)
@@ -186,6 +192,9 @@ def test_what_is_saved_reopens_as_the_same_model(membrane: Studio):
     assert np.abs(np.subtract(membrane.place(0), seen)).max() < 1.0  # CSS pixels
     assert page.get_by_role("radio", name="Strain").is_checked()
     assert page.get_by_role("heading", name="roof").is_visible()
+    assert json.loads(page.evaluate("(key) => localStorage.getItem('hookean-groups-' + key)", membrane.key)) == {
+        "many": many
+    }
     named = saved.with_suffix(".hookean")
     named.write_bytes(saved.read_bytes())
     assert open_scene(named).canonical == Scene.read(before).canonical

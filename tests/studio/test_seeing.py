@@ -54,7 +54,8 @@ def test_outliers_do_not_set_the_scale_and_are_marked(tab: Studio):
 
 @pytest.mark.soak
 def test_named_views_are_orthographic(tab: Studio):
-    """Particles that differ only in depth are drawn at the same place, to less than a pixel."""
+    """Particles that differ only in depth are drawn at the same place, to less than a pixel; a drag from above keeps
+    the height of what is dragged, to the bit."""
     scene = net(3)
     scene["particles"] = [[x, y, z] for x in (0.0, 2.0) for y in (0.0, 2.0) for z in (0.0, 2.0)]
     scene["meshes"] = {}
@@ -71,6 +72,13 @@ def test_named_views_are_orthographic(tab: Studio):
             [other] = [j for j in range(8) if j != i and (points[j, across] == points[i, across]).all()]
             assert points[other, along] != points[i, along]
             assert np.abs(places[i] - places[other]).max() < 1.0, view  # CSS pixels
+        if view == "Top":
+            tab.drag(3, 20, -15)  # the upper of two
+            tab.until(lambda: tab.service.anchors("seen-box")[0]["targets"][1] != [0.0, 2.0, 2.0])
+            tab.settled()
+            assert tab.service.anchors("seen-box")[0]["targets"][1][2] == 2.0
+            tab.press("Undo")
+            tab.settled()
 
 
 def test_on_a_phone_the_form_stays_in_sight_and_targets_fit_fingers(open_studio: Opened):

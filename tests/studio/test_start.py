@@ -8,11 +8,13 @@ import re
 import subprocess
 import sys
 from pathlib import Path
-from urllib.parse import urlsplit
+from urllib.parse import quote, urlsplit
 
 import numpy as np
 import pytest
 
+from hookean import Scene, Simulation
+from hookean.files import project
 from serving import CABLE, HANG
 from soak import sampled
 
@@ -172,6 +174,36 @@ def test_an_obj_and_a_scene_are_opened_from_a_file(studio: Studio, tmp_path: Pat
     studio.drawing()
     studio.press("Solve")
     studio.rests_at(equilibrium(CABLE))
+
+
+def test_a_view_with_invalid_values_is_named_and_the_model_opens(studio: Studio):
+    """A view that another program wrote: what is valid of it is used, the rest is named in one sentence, here and in an
+    address; one that was cut says so."""
+    view = {
+        "eye": "above",
+        "colouring": "heat",
+        "scale": {"kind": "auto", "low": "0"},
+        "surface": 3,
+        "groups": {"ends": [0, 99]},
+        "groupColours": "red",
+        "layers": [1],
+        "picked": 7,
+        "marked": [1, 2],
+    }
+    drop(studio, "cable.hookean", project.write(project.Project(Simulation(Scene.read(CABLE)), view)))
+    studio.drawing()
+    wrong = "camera, colouring, colour scale, groups, colours of groups, layers, picked element, surface"
+    page = studio.page
+    page.get_by_text(f"The view in the file has invalid values, which were left out: {wrong}.").wait_for()
+    page.get_by_text("Select several").click()
+    assert page.get_by_text("2 particles selected.").count() == 1
+    page.keyboard.press("Escape")
+    for told, said in (
+        ('{"layers": 1}', "has invalid values, which were left out: layers."),
+        ("eJyr", "is incomplete"),
+    ):
+        page.goto(f"{studio.service.url}/#s={studio.key}&v={quote(told)}")
+        page.get_by_text(f"The view in the address {said}").wait_for()
 
 
 NONE = [b"3D Geometry File Format " + bytes(200), b"not a model at all", b""]

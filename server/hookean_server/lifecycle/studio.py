@@ -19,7 +19,7 @@ import zipfile
 import zlib
 from contextlib import suppress
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, TypeGuard
 from urllib.parse import quote
 
 import typer
@@ -116,9 +116,10 @@ def _show(found: Found, file: Path | None, data: bytes | None, browser: bool) ->
             key, notes, new = opened(found, file, data)
         except Refused as error:
             return command.refuse(str(error))
-        for note in notes:
+        view, left_out = view_in(data) if new else ("", "")
+        for note in [*notes, *filter(None, [left_out])]:
             print(f"{file.name}: {note}", file=sys.stderr)
-        session = f"&s={quote(key)}{view_in(data) if new else ''}"
+        session = f"&s={quote(key)}{view}"
     address = f"{found.url}/#t={quote(found.token)}{session}"
     if not browser:
         print(address, flush=True)
@@ -178,22 +179,44 @@ def _sweep() -> None:
                 path.unlink()
 
 
-def view_in(data: bytes) -> str:
-    """How a saved model was looked at, as the part of the page's address from which the page takes it; "" for a file
-    without a view."""
+def view_in(data: bytes) -> tuple[str, str]:
+    """How a saved model was looked at, as the part of the page's address from which the page takes it, "" for a file
+    without a view; and a sentence where it is too long for an address, else ""."""
     if not zipfile.is_zipfile(io.BytesIO(data)):
-        return ""
+        return "", ""
     with (
         suppress(zipfile.BadZipFile, KeyError, ValueError, NotImplementedError, zlib.error),
         zipfile.ZipFile(io.BytesIO(data)) as parts,
     ):
-        if parts.getinfo(VIEW).file_size > packing.LARGEST:
-            return ""
         view = json.loads(parts.read(VIEW))
-        told = packing.packed(json.dumps(view, separators=(",", ":")))
-        if isinstance(view, dict) and view and len(told) <= LONGEST_VIEW:
-            return f"&v={told}"
-    return ""
+        if isinstance(view, dict) and view:
+            told = packing.packed(json.dumps(stepped(view), separators=(",", ":")))
+            if len(told) <= LONGEST_VIEW:
+                return f"&v={told}", ""
+            return (
+                "",
+                "the view is too long for an address; drop the file on the studio's page to see it as it was saved",
+            )
+    return "", ""
+
+
+def stepped(view: dict[str, Any]) -> dict[str, Any]:
+    """A view with its sets of particles as differences of their numbers, which compress well."""
+    groups, marked = view.get("groups"), view.get("marked")
+    steps: dict[str, Any] = {}
+    if isinstance(groups, dict) and all(map(_is_set, groups.values())):
+        steps["groups"] = {name: _steps(group) for name, group in groups.items()}
+    if _is_set(marked):
+        steps["marked"] = _steps(marked)
+    return {**{name: value for name, value in view.items() if name not in steps}, "steps": steps} if steps else view
+
+
+def _is_set(value: Any) -> TypeGuard[list[int]]:
+    return isinstance(value, list) and all(type(one) is int for one in value)
+
+
+def _steps(particles: list[int]) -> list[int]:
+    return [one - before for one, before in zip(particles, [0, *particles], strict=False)]
 
 
 def opened(found: Found, file: Path, data: bytes) -> tuple[str, list[str], bool]:

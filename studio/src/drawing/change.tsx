@@ -43,8 +43,33 @@ const key = (a: number, b: number) => (a < b ? `${a} ${b}` : `${b} ${a}`);
 
 const distinct = (edges: [number, number][]) => [...new Map(edges.map((edge) => [key(...edge), edge])).values()];
 
+/** Delete what is picked or selected: faces, a spring, or particles; whether there was anything. */
+export function deleted(studio: Studio): boolean {
+  const topology = studio.session.topology.value;
+  if (!topology) return false;
+  const { particles, springs, faces } = chosenOf(studio, topology);
+  const count = Object.values(faces).flat().length;
+  const away = (edit: Draw["delete"], number: number, what: string) =>
+    void draw(studio, { delete: edit }, `${counted(number, what)} deleted`);
+  if (particles.length) away({ particles }, particles.length, "particle");
+  else if (springs.length) away({ springs }, springs.length, "spring");
+  else if (count) away({ faces }, count, "face");
+  return particles.length + springs.length + count > 0;
+}
+
+/** Make an edit of the drawing, and report it. */
+async function draw({ session, options }: Studio, edit: Draw, done: string): Promise<void> {
+  try {
+    await session.edit({ draw: edit });
+    [options.picked.value, options.marked.value] = [null, []];
+    tell(`${done}; Undo takes it back.`);
+  } catch (error) {
+    refuse(error);
+  }
+}
+
 export function Change({ studio, pen }: { studio: Studio; pen: Pen }) {
-  const { session, options } = studio;
+  const { session } = studio;
   const pieces = useSignal(2);
   const by = useSignal<Point>([0, 0, 1]);
   const hasFaces = useSignal(true);
@@ -54,20 +79,13 @@ export function Change({ studio, pen }: { studio: Studio; pen: Pen }) {
   const { particles, springs, faces, edges } = chosenOf(studio, topology);
   const count = Object.values(faces).flat().length;
   const able = !busy.value && session.connection.value === "live";
-  const draw = async (edit: Draw, done: string) => {
+  const change = async (edit: Draw, done: string) => {
     busy.value = true;
-    try {
-      await session.edit({ draw: edit });
-      [options.picked.value, options.marked.value] = [null, []];
-      tell(`${done}; Undo takes it back.`);
-    } catch (error) {
-      refuse(error);
-    } finally {
-      busy.value = false;
-    }
+    await draw(studio, edit, done);
+    busy.value = false;
   };
   const button = (name: string, hint: string, edit: () => Draw, is: boolean, done: string) => (
-    <button type="button" class="small" title={hint} disabled={!able || !is} onClick={() => void draw(edit(), done)}>
+    <button type="button" class="small" title={hint} disabled={!able || !is} onClick={() => void change(edit(), done)}>
       {name}
     </button>
   );
@@ -76,13 +94,12 @@ export function Change({ studio, pen }: { studio: Studio; pen: Pen }) {
     const mesh = made && typeof made !== "string" ? (made["mesh"] as string) : "faces";
     return { extrude: { edges, by: by.value, ...(hasFaces.value ? { mesh } : {}) } };
   };
-  const several = (number: number, what: string) => (number === 1 ? `1 ${what}` : counted(number, what));
   return (
     <details class="seldom">
       <summary title="Divide springs and faces, extrude edges, delete">Change what is selected</summary>
       <p class="note" role="status">
-        {several(particles.length, "particle")}, {several(springs.length, "spring")} and{" "}
-        {several(count, "face")} selected.
+        {counted(particles.length, "particle")}, {counted(springs.length, "spring")} and{" "}
+        {counted(count, "face")} selected.
         Click one, or select more under Picked.
       </p>
       <div class="row">
@@ -101,14 +118,14 @@ export function Change({ studio, pen }: { studio: Studio; pen: Pen }) {
           "New particles on the springs; each row of pieces behaves as its spring did",
           () => ({ divide: { springs, pieces: pieces.value } }),
           springs.length > 0,
-          `${several(springs.length, "spring")} divided`,
+          `${counted(springs.length, "spring")} divided`,
         )}
         {button(
           "Divide faces",
           "Each face becomes four; neighbours get triangles where they meet new corners",
           () => ({ divide: { faces } }),
           count > 0,
-          `${several(count, "face")} divided`,
+          `${counted(count, "face")} divided`,
         )}
       </div>
       <div class="components" role="group" aria-label="Extrude by" title="How far the new edges are from the old ones">
@@ -139,7 +156,7 @@ export function Change({ studio, pen }: { studio: Studio; pen: Pen }) {
           "Copies the selected springs, or edges of a mesh, by this vector, with springs and faces between",
           extrusion,
           edges.length > 0,
-          `${several(edges.length, "edge")} extruded`,
+          `${counted(edges.length, "edge")} extruded`,
         )}
       </div>
       <div class="row" role="group" aria-label="Delete">
@@ -148,21 +165,21 @@ export function Change({ studio, pen }: { studio: Studio; pen: Pen }) {
           "With all springs and faces on them",
           () => ({ delete: { particles } }),
           particles.length > 0,
-          `${several(particles.length, "particle")} deleted`,
+          `${counted(particles.length, "particle")} deleted`,
         )}
         {button(
           "Delete springs",
           "Their particles stay",
           () => ({ delete: { springs } }),
           springs.length > 0,
-          `${several(springs.length, "spring")} deleted`,
+          `${counted(springs.length, "spring")} deleted`,
         )}
         {button(
           "Delete faces",
           "Their particles stay",
           () => ({ delete: { faces } }),
           count > 0,
-          `${several(count, "face")} deleted`,
+          `${counted(count, "face")} deleted`,
         )}
       </div>
     </details>

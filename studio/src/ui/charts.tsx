@@ -53,10 +53,15 @@ function Chart({ line, session, recording }: Shown) {
   useEffect(() => {
     if (!place.current) return;
     const plot = plotted(line, place.current);
+    let isSeen = false; // a panel that is closed, or scrolled out of sight, draws nothing
     const show = () => {
-      // a panel that is closed draws nothing
-      if (place.current?.checkVisibility()) plot.setData([recording.times(), recording.of(line.of)]);
+      if (isSeen) plot.setData([recording.times(), recording.of(line.of)]);
     };
+    const sight = new IntersectionObserver((told) => {
+      isSeen = told.at(-1)!.isIntersecting;
+      show();
+    });
+    sight.observe(place.current);
     const sizes = new ResizeObserver(([entry]) => {
       const width = Math.floor(entry?.contentRect.width ?? 0);
       if (width > 0 && width !== plot.width) plot.setSize({ width, height: HEIGHT });
@@ -64,10 +69,10 @@ function Chart({ line, session, recording }: Shown) {
     });
     sizes.observe(place.current);
     const stop = recording.onNew(show);
-    show();
     return () => {
       stop();
       sizes.disconnect();
+      sight.disconnect();
       plot.destroy();
     };
   }, [isDark, recording]);

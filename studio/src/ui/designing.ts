@@ -195,12 +195,17 @@ export const isAny = ({ variables, goals, constraints }: Kept) =>
 /** Whether this browser keeps a problem of a session. */
 export const isKept = (key: string) => remembered<unknown>(kept(key), null) !== null;
 
-/** Give the page of a session the problem that a file kept, if it is one. */
+/** Whether a value from a file is a problem. */
+export function isProblem(told: unknown): boolean {
+  const { variables, goals, constraints } = (told ?? {}) as Partial<Kept>;
+  return [variables, goals, constraints].every(
+    (part) => Array.isArray(part) && part.every((one) => typeof one === "object" && one !== null),
+  );
+}
+
+/** Give the page of a session the problem that a file kept. */
 export function keepDesign(key: string, design: unknown): void {
-  const told = design as Partial<Kept> | null | undefined;
-  const parts = [told?.variables, told?.goals, told?.constraints];
-  if (parts.every((part) => Array.isArray(part) && part.every((one) => typeof one === "object" && one !== null)))
-    remember(kept(key), told);
+  if (isProblem(design)) remember(kept(key), design);
 }
 
 const unknowns = ({ scene, variables }: Problem) =>

@@ -1,12 +1,12 @@
 // Groups of particles: in this browser by session, and in the file of a model.
 import type { Groups, Kept } from "../view/types";
-import { isAny, type Kept as Problem } from "./designing";
 import { packed } from "../view/packed";
+import { stepped } from "./checked";
 import { remember, remembered } from "./theme";
 
 const name = (key: string) => `hookean-groups-${key}`;
-/** Characters of a packed view: the service accepts heads of 16 kB, and addresses of this length work everywhere. */
-const LONGEST = { file: 14_000, link: 40_000 };
+/** Characters of a packed view: addresses of this length work everywhere. */
+const LONGEST = 40_000;
 
 export const keptGroups = (key: string) => remembered<Groups>(name(key), {});
 
@@ -45,21 +45,20 @@ interface Fitted {
   notes: string[];
 }
 
-/** The view as a file or an address keeps it, packed, with the design problem, and sentences on what is too long. */
-export async function fitting(view: Kept, design: Problem, place: keyof typeof LONGEST): Promise<Fitted> {
-  const { groups, recipe, ...rest } = view;
+/** A view as an address has it, packed, and sentences on what is too long for that. */
+export async function fitting(view: Kept): Promise<Fitted> {
+  const { groups, marked, recipe: _, design: __, ...rest } = view;
   const notes: string[] = [];
   let kept: Kept = rest;
   let made = await packed(JSON.stringify(kept));
   const keep = async (more: Partial<Kept>, note: string) => {
     const wider = { ...kept, ...more };
-    const longer = await packed(JSON.stringify(wider));
-    if (longer.length <= LONGEST[place]) [kept, made] = [wider, longer];
+    const longer = await packed(JSON.stringify(stepped(wider)));
+    if (longer.length <= LONGEST) [kept, made] = [wider, longer];
     else notes.push(note);
   };
-  if (isAny(design)) await keep({ design }, `The design problem is too large for the ${place}; this browser keeps it.`);
   const names = Object.keys(groups ?? {}).join(", ");
-  if (groups) await keep({ groups }, `The groups ${names} are too large for the ${place}; this browser keeps them.`);
-  if (recipe) await keep({ recipe }, `The recipe is too long for the ${place}; save it by itself.`);
+  if (names) await keep({ groups }, `The groups ${names} are too large for the link; this browser keeps them.`);
+  if (marked) await keep({ marked }, "The selection is too large for the link; keep it as a group and save the model.");
   return { view: made, notes };
 }

@@ -1,6 +1,7 @@
 // What keys do on the page of a session, and the list of them.
 import { useEffect, useRef } from "preact/hooks";
 import { holder, pin, release } from "../hand";
+import { deleted } from "../drawing/change";
 import { LOOKS } from "./see";
 import type { Studio } from "./studio";
 
@@ -13,6 +14,7 @@ const LIST: [string, string][] = [
   ["f", "Zoom to fit"],
   ["1 2 3 4", "Perspective, top, front, right"],
   ["p", "Pin or release the picked particle"],
+  ["Delete", "Delete what is picked or selected"],
   ["Esc", "Close the notice, else clear the selection"],
   ["?", "Show this list"],
 ];
@@ -28,7 +30,7 @@ const ON_CANVAS: [string, string][] = [
 ];
 
 /** Keys that a read-only page does not have. */
-const EDITS = new Set([" ", ".", "p", "z"]);
+const EDITS = new Set([" ", ".", "p", "z", "delete"]);
 
 export function Keys({ studio }: { studio: Studio }) {
   const dialog = useRef<HTMLDialogElement>(null);
@@ -108,6 +110,7 @@ function obeyed(studio: Studio, event: KeyboardEvent): boolean {
   else if (event.key === ".") void session.tell("step");
   else if (event.key === "f") view.value?.fit();
   else if (event.key === "p") hold(studio);
+  else if (event.key === "Delete") return deleted(studio);
   else if (event.key === "Escape") studio.options.picked.value = null;
   else return false;
   return true;

@@ -3,7 +3,7 @@
 import { signal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import { Refused } from "../api";
-import { plain } from "./words";
+import { counted, plain } from "./words";
 
 interface Notice {
   kind: "refused" | "done";
@@ -32,10 +32,11 @@ export function tell(sentence: string, details: string[] = []): void {
   if (!details.length) setTimeout(() => notice.value === done && quiet(), SEEN);
 }
 
-/** Show that a file is open, with the notes on it; what the page itself shows with a repair is left out. */
-export function tellOpen(name: string, warnings: string[] = []): void {
-  const notes = warnings.filter((sentence) => sentence !== "nothing is held");
-  if (notes.length) tell(`${name} is open. Notes on the file:`, notes);
+/** Show that a file is open, and sentences on it that are shown nowhere else; its other notes are below the form. */
+export function tellOpen(name: string, warnings: string[] = [], only: string[] = []): void {
+  const notes = warnings.filter((sentence) => sentence !== "nothing is held"); // that one comes with a repair
+  if (only.length) tell(`${name} is open. Notes on what was opened:`, only);
+  else if (notes.length) tell(`${name} is open, with ${counted(notes.length, "note")} below the form.`);
 }
 
 export const quiet = () => (notice.value = null);

@@ -25,9 +25,9 @@ async function openFile(file: File): Promise<void> {
     const { reel, model } = await reelOf(file);
     const made = await api.open(model);
     if (reel) await keepReel(made.key, reel);
-    keepSeen(made.key, await viewOf(file));
+    const note = keepSeen(made.key, await viewOf(file), made.particles);
     go(made.key);
-    tellOpen(file.name, made.warnings);
+    tellOpen(file.name, made.warnings, note ? [note] : []);
   } catch (error) {
     met(error);
     refuse(error, `${file.name} was not opened. `);

@@ -8,8 +8,9 @@ import { Copied } from "./copied";
 import { barOf, picture, sizeOf, svg } from "./drawing";
 import { refuse } from "./notices";
 import { linkTo, met } from "./place";
-import { fitting, keptRecipe } from "./kept";
-import { withReel } from "./reelfile";
+import { isAny } from "./designing";
+import { keptRecipe } from "./kept";
+import { completed } from "./reelfile";
 import { seenNow, Share } from "./share";
 import type { Studio } from "./studio";
 import { dark } from "./theme";
@@ -114,13 +115,11 @@ export function OutPanel({ studio, title }: { studio: Studio; title: string }) {
       .replace(/[^\w.-]+/g, "-")
       .replace(/^-+|-+$/g, "") || "session";
   const exported = async (format: api.Format) => {
-    const recipe = keptRecipe(session.key);
-    const now = format === "hookean" ? seenNow(studio) : null;
-    const seen = now && { ...now, ...(recipe && { recipe }) };
-    const kept = seen && (await fitting(seen, studio.design.problem.value, "file"));
-    const made = await api.exported(session.key, format, kept?.view);
-    const blob = format === "hookean" ? await withReel(made.blob, studio.film.reel()) : made.blob;
-    return { blob, notes: [...made.notes, ...(kept?.notes ?? [])] };
+    const made = await api.exported(session.key, format);
+    if (format !== "hookean") return made;
+    const [seen, recipe, design] = [seenNow(studio), keptRecipe(session.key), studio.design.problem.value];
+    const view = seen && { ...seen, ...(recipe && { recipe }), ...(isAny(design) && { design }) };
+    return { ...made, blob: await completed(made.blob, view, studio.film.reel()) };
   };
   const take = async (seen: string, file: string, made: () => Promise<{ blob: Blob; notes: string[] }>) => {
     busy.value = seen;

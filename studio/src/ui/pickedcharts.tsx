@@ -62,7 +62,7 @@ function Chart({ line, times, whole }: OfChart) {
     };
   }, [isDark, whole]);
   useEffect(() => {
-    if (place.current?.checkVisibility()) plot.current?.setData([times, line.values]);
+    if (place.current?.checkVisibility({ contentVisibilityAuto: true })) plot.current?.setData([times, line.values]);
   });
   const known = line.values.filter((value) => value !== null);
   const [low, high] = [Math.min(...known), Math.max(...known)];

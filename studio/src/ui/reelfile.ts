@@ -1,7 +1,9 @@
-// Recordings and bookmarks in a .hookean file: a part of the archive that this page alone writes and reads. It is the
-// length of a head, the head as JSON, and the numbers of its frames one after the other.
+// What this page adds to a .hookean file: how the model is looked at, and recordings and bookmarks in a part that this
+// page alone writes and reads. That is the length of a head, the head as JSON, and the numbers of its frames one after
+// the other.
 import type { Frame } from "../frame";
-import { partOf } from "../view/kept";
+import { partOf, VIEW } from "../view/kept";
+import type { Kept } from "../view/types";
 import type { Reel } from "./reel";
 
 const PART = "recording.bin";
@@ -69,10 +71,12 @@ function read(data: ArrayBuffer): Reel {
   };
 }
 
-/** The file of a model with what was recorded of it; as it is where nothing was. */
-export async function withReel(file: Blob, reel: Reel | null): Promise<Blob> {
-  if (!reel) return file;
-  return changed(file, (parts) => ({ ...parts, [PART]: written(reel) }));
+/** The file of a model with how it is looked at, and with what was recorded of it. */
+export async function completed(file: Blob, view: Kept | null, reel: Reel | null): Promise<Blob> {
+  if (!view && !reel) return file;
+  const seen = view && new TextEncoder().encode(JSON.stringify(view));
+  const more = { ...(seen && { [VIEW]: seen }), ...(reel && { [PART]: written(reel) }) };
+  return changed(file, (parts) => ({ ...parts, ...more }));
 }
 
 /** What was recorded in a file, and the file without it, as the service needs it. */

@@ -17,14 +17,10 @@ export function seenNow({ view, options, surfacing }: Studio): Kept | null {
   return {
     ...view.value.kept(),
     ...(picked && { picked }),
-    ...(marked.length && marked.length < MOST && { marked }),
+    ...(marked.length && { marked }),
     ...(isRead && { surface }),
   };
 }
-
-/** Particles of a selection that an address and a file keep. */
-const MOST = 1000;
-const NOTHING = { variables: [], goals: [], constraints: [] };
 
 export function Share({ studio }: { studio: Studio }) {
   const { session } = studio;
@@ -40,7 +36,7 @@ export function Share({ studio }: { studio: Studio }) {
       const token = await api.link(session.key);
       isLinked.value = true;
       const seen = seenNow(studio);
-      const kept = seen && (await fitting(seen, NOTHING, "link"));
+      const kept = seen && (await fitting(seen));
       const made = `${location.origin}/#g=${token}&${linkTo(session.key).slice(1)}${kept ? `&v=${kept.view}` : ""}`;
       address.value = "";
       await navigator.clipboard.writeText(made).catch(() => (address.value = made));

@@ -10,9 +10,16 @@ export function Stable({ studio: { session, rested, options, view } }: { studio:
     return rested.isReading ? (
       <p class="faint">Checking the stability ...</p>
     ) : (
-      <button type="button" class="small" onClick={() => rested.ask()}>
-        Check the stability
-      </button>
+      <p>
+        <button
+          type="button"
+          class="small"
+          title="Whether the shape is stable, and how accurate its positions are; takes seconds for a large model"
+          onClick={() => rested.ask()}
+        >
+          Check the stability
+        </button>
+      </p>
     );
   const { stability, stability_reason: reason, soft_particle: soft, position_error: error } = result;
   const why = [...new Set([reason, error === null ? result.position_reason : ""])].filter(Boolean).map(sentence);

@@ -10,6 +10,7 @@ import { Casing } from "./casing";
 import { Designing } from "./designing";
 import { Film } from "./film";
 import { keepColours, keepGroups, keptColours, keptGroups } from "./kept";
+import { following } from "./moved";
 import { Panels } from "./panels";
 import { arrive, entry } from "./place";
 import { Readings } from "./readings";
@@ -64,9 +65,9 @@ export function SessionPage({ name }: { name: string }) {
     const casing = new Casing(session, chosen);
     const read = { readings, rested, design, surfacing, film, traced, casing };
     setStudio({ session, options: chosen, view: signal(null), beside: signal(null), ...read });
-    const stop = sharing(session, chosen);
+    const stops = [sharing(session, chosen), following(session, chosen)];
     return () => {
-      stop();
+      stops.forEach((stop) => stop());
       forgets.forEach((forget) => forget());
       Object.values(read).forEach((one) => one.dispose());
       session.close();

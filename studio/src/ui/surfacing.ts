@@ -83,7 +83,7 @@ const MANY = 30_000;
 const NOTHING = 1e-9;
 
 /** What was chosen, from an address or a file; null if that is invalid. */
-function chosenOf(told: unknown): Chosen | null {
+export function chosenOf(told: unknown): Chosen | null {
   const { scalar = null, heights = false, step = null, water = false } = (told ?? {}) as Partial<Chosen>;
   if (scalar !== null && !SCALARS.some(({ name }) => name === scalar)) return null;
   const distance = typeof step === "number" && step > 0 ? step : null;

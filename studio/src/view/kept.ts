@@ -3,14 +3,16 @@ import { remember } from "./memory";
 import type { Kept, Options } from "./types";
 
 const taken = new Map<string, Kept>();
+/** The part of a .hookean file that has how the model was looked at. */
+export const VIEW = "view.json";
 const LOCAL = 0x04034b50;
 const MOST = 128;
 
-/** `view.json` of a .hookean file; null if the file has none. */
-export async function viewOf(file: File): Promise<Kept | null> {
+/** What `view.json` of a .hookean file has; null if the file has none. */
+export async function viewOf(file: File): Promise<unknown> {
   try {
-    const part = await partOf(file, "view.json");
-    return part && (JSON.parse(await part.text()) as Kept);
+    const part = await partOf(file, VIEW);
+    return part && (JSON.parse(await part.text()) as unknown);
   } catch {
     return null; // the service reports what is wrong with a damaged file
   }
@@ -35,11 +37,10 @@ export async function partOf(file: File, wanted: string): Promise<Blob | null> {
   return null;
 }
 
-/** Keep the view for the page of a session. */
-export function keepView(key: string, view: Kept | null): void {
-  if (!view) return;
+/** Keep a valid view for the page of a session. */
+export function keepView(key: string, view: Kept): void {
   taken.set(key, view);
-  if (Array.isArray(view.eye)) remember(key, view.eye);
+  if (view.eye) remember(key, view.eye);
 }
 
 /** Give the options of a session's page what was kept; returns it. */
@@ -47,12 +48,11 @@ export function takeUp(key: string, options: Options): Kept | null {
   const view = taken.get(key);
   if (!view) return null;
   taken.delete(key);
-  if (["force", "strain", "plain"].includes(view.colouring)) options.colouring.value = view.colouring;
-  if (view.scale && ["auto", "even", "log"].includes(view.scale.kind)) options.scale.value = view.scale;
-  const { picked } = view;
-  const isPicked = picked && ["particle", "spring"].includes(picked.kind) && Number.isInteger(picked.index);
-  if (isPicked) options.picked.value = { kind: picked.kind, index: picked.index };
-  if (Array.isArray(view.marked)) options.marked.value = view.marked.filter((one) => Number.isInteger(one) && one >= 0);
+  // colours that a program gives come from the service
+  if (view.colouring && view.colouring !== "given") options.colouring.value = view.colouring;
+  if (view.scale) options.scale.value = { ...view.scale, low: view.scale.low ?? null, high: view.scale.high ?? null };
+  if (view.picked) options.picked.value = view.picked;
+  if (view.marked) options.marked.value = view.marked;
   if (view.groups) options.groups.value = view.groups;
   if (view.groupColours) options.groupColours.value = view.groupColours;
   options.layers.value = { ...options.layers.value, ...view.layers };

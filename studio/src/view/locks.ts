@@ -3,6 +3,8 @@ import { Plane, type Ray, Vector3 } from "three";
 import type { Lock } from "./types";
 
 const AXES = { x: new Vector3(1, 0, 0), y: new Vector3(0, 1, 0), z: new Vector3(0, 0, 1) };
+/** The views from above, from the front and from the right are as near to an axis as this [-]. */
+const STRAIGHT = 1 - 1e-8;
 /** So nearly along the line of sight [radians], a place on it is anybody's guess. */
 const GRAZING = 0.04;
 
@@ -21,9 +23,13 @@ export function normalOf(lock: Lock, facing: Vector3): Vector3 | null {
 export function led(lock: Lock, from: Vector3, sight: Ray, facing: Vector3): Vector3 | null {
   const axis = axisOf(lock);
   if (axis) return alongAxis(from, axis, sight);
-  const normal = normalOf(lock, facing)!;
+  const seen = normalOf(lock, facing)!;
+  const across = Object.values(AXES).findIndex((one) => Math.abs(one.dot(seen)) > STRAIGHT);
+  const normal = Object.values(AXES)[across] ?? seen;
   if (Math.abs(normal.dot(sight.direction)) < Math.sin(GRAZING)) return null;
-  return sight.intersectPlane(new Plane().setFromNormalAndCoplanarPoint(normal, from), new Vector3());
+  const at = sight.intersectPlane(new Plane().setFromNormalAndCoplanarPoint(normal, from), new Vector3());
+  // without rounding: what is drawn flat stays flat
+  return across < 0 || !at ? at : at.setComponent(across, from.getComponent(across));
 }
 
 /** The point of an axis through `from` that is nearest to a line of sight. */

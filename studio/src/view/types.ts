@@ -181,14 +181,14 @@ export const options = (): Options => ({
 /** How a model was looked at, in its file. */
 export interface Kept {
   /** Target and direction to the eye (x y z each), height seen [length], angle [degrees]. */
-  eye: number[];
-  colouring: Colouring;
+  eye?: number[];
+  colouring?: Colouring;
   scale?: Scale;
   groups?: Groups;
   groupColours?: Record<string, string>;
   /** How the file that it was made from was read, and what that is called. */
   recipe?: { file: string; text: string };
-  layers: Partial<Record<Layer, boolean>>;
+  layers?: Partial<Record<Layer, boolean>>;
   /** A design problem of it. */
   design?: unknown;
   /** What was picked and selected, and what was read off the surface. */

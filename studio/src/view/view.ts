@@ -62,6 +62,8 @@ class Drawing implements View {
   private drawn: Frame | null = null;
   /** Whether what is drawn of that frame is of before anchors or loads have changed. */
   private outdated = false;
+  /** Whether the sizes and numbers of that frame are known exactly. */
+  private surveyed = false;
   private fitted = false;
   /** Nobody has chosen yet from where to look; then the eye follows a form that leaves the picture. */
   private untouched = false;
@@ -316,6 +318,7 @@ class Drawing implements View {
       effect(() => {
         picture.know(options.restLengths.value);
         this.dressed = 0;
+        this.outdated = true;
         this.scale.forget();
         this.ask();
       }),
@@ -421,7 +424,7 @@ class Drawing implements View {
     const isOther = this.drawn !== frame;
     if (isOther || this.outdated) this.upload(frame);
     const began = performance.now();
-    this.survey(frame, finely);
+    if (!this.surveyed) this.survey(frame, finely);
     this.dress();
     if (isOther) note(stats.colourMilliseconds, performance.now() - began);
     if (!this.fitted) this.begin(frame);
@@ -449,7 +452,7 @@ class Drawing implements View {
     note(stats.uploadMilliseconds, performance.now() - began);
     if (!this.drawn || this.outdated) this.picture.survey(frame);
     this.drawn = frame;
-    this.outdated = false;
+    this.outdated = this.surveyed = false;
   }
 
   /** Now and then: how large all is, and which numbers occur. */
@@ -457,6 +460,7 @@ class Drawing implements View {
     const now = performance.now();
     const resting = finely || !frame.playing;
     if (!resting && !this.scale.due(now)) return;
+    this.surveyed = resting;
     this.picture.survey(frame);
     if (this.scale.take(this.numbers(frame), resting, now)) this.relabel();
     const { load, reaction } = this.picture.longest;
