@@ -115,7 +115,7 @@ class Equilibrium:
         if self._tangent is not None or self.even is not None:
             total[places] = (self.response.T @ y)[places]
             return total
-        for axes, blocks in _blocks(self.system, self.state, np.unique(places // 3)):
+        for axes, blocks in _blocks(self.system, self.state, places // 3):
             total += np.bincount(axes.ravel(), np.einsum("eab,ea->eb", blocks, y[axes]).ravel(), len(total))
         kept = np.zeros(len(total))
         kept[places] = total[places]
