@@ -167,7 +167,7 @@ def _length(search: Search, here: Here, changes: Floats) -> float:
     """The part of a step, at most 1, after which the first limit holds that does not yet (equation 16.41 there)."""
     values, low, high = limits_at(search, here.found)
     room = np.where(changes > 0.0, high - values, low - values)
-    room[here.rows] = np.inf * np.sign(changes[here.rows])  # these are held by the step itself
+    room[here.rows] = np.copysign(np.inf, changes[here.rows])  # these are held by the step itself
     ways = (changes != 0.0) & (np.sign(room) == np.sign(changes))
     return float(min(1.0, (room[ways] / changes[ways]).min(initial=1.0)))
 
