@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+SMALL = 1000  # particles up to which NumPy solves
 Goal = tuple[str, Ints, Any, float]
 """Kind (z, point, plane, length, direction, force, reaction, load_path), particles or edges, targets, weight."""
 
@@ -46,15 +47,9 @@ class Problem:
 
     def shape(self, q: Floats) -> tuple[Floats, Floats]:
         """Places (n, 3) and reactions (n, 3): C^T Q C x = p."""
-        from scipy.sparse import csr_matrix, diags
-
-        m, n = len(self.edges), len(self.points)
-        rows = np.tile(np.arange(m), 2)
-        c = csr_matrix((np.repeat([-1.0, 1.0], m), (rows, self.edges.T.ravel())), (m, n))
-        k = (c.T @ diags(q) @ c).tocsc()
-        x, free = self.points.copy(), self.free
+        x, free, k = self.points.copy(), self.free, _stiffness(self.edges, q, len(self.points))
         right = self.loads[free] - k[free][:, self.supports] @ x[self.supports]
-        x[free] = _solved(k[free][:, free].tocsc(), right)
+        x[free] = _solved(k[free][:, free], right)
         return x, self.loads - k @ x
 
     def values(self, q: Floats, kind: str, which: Ints) -> Floats:
@@ -182,13 +177,27 @@ def vault(m: int = 20) -> Problem:
     )
 
 
+def _stiffness(edges: Ints, q: Floats, n: int) -> Any:
+    """C^T Q C (n, n); by NumPy where it is small, since SciPy's sparse matrices take long to load."""
+    ends = edges.ravel()
+    rows, columns = np.repeat(ends, 2), np.repeat(edges, 2, axis=0).ravel()
+    values = np.outer(q, [1.0, -1.0, -1.0, 1.0]).ravel()
+    if n <= SMALL:
+        k = np.zeros((n, n))
+        np.add.at(k, (rows, columns), values)
+        return k
+    from scipy.sparse import coo_matrix
+
+    return coo_matrix((values, (rows, columns)), (n, n)).tocsc()
+
+
 def _solved(k: Any, right: Floats) -> Floats:
-    """K^-1 of a right side; by NumPy where that is small, since SciPy's factors take long to load."""
-    if len(right) <= 1000:
-        return np.linalg.solve(k.toarray(), right)
+    """K^-1 of a right side."""
+    if isinstance(k, np.ndarray):
+        return np.linalg.solve(k, right)
     from scipy.sparse.linalg import splu
 
-    return np.asarray(splu(k).solve(right))
+    return np.asarray(splu(k.tocsc()).solve(right))
 
 
 def recovery(m: int) -> Problem:

@@ -17,36 +17,37 @@ MESH = 4
 STEP = 1e-3  # of fourth order: 1e-12 of values of size 1, and rounding of shapes by 1e-12 / 1e-3
 
 
-def saddle(name: str, pressure: float = 0.4, shift: float = 0.0, tension: float = 2.0) -> dict[str, Any]:
-    """A film over a saddle of 4 x 4 faces, one side of the rim moved by a shift along z, with what a name adds."""
-    number = np.arange((MESH + 1) ** 2).reshape(MESH + 1, MESH + 1)
-    x, y = np.divmod(np.arange(number.size), MESH + 1) / np.array([[MESH], [MESH]])
+def saddle(name: str, pressure: float = 0.4, shift: float = 0.0, tension: float = 2.0,
+           mesh: int = MESH) -> dict[str, Any]:  # fmt: skip
+    """A film over a saddle of mesh x mesh faces, a side of the rim moved by a shift along z, with what a name adds."""
+    number = np.arange((mesh + 1) ** 2).reshape(mesh + 1, mesh + 1)
+    x, y = np.divmod(np.arange(number.size), mesh + 1) / np.array([[mesh], [mesh]])
     points = np.column_stack([x, y, 0.8 * ((x - 0.5) ** 2 - (y - 0.5) ** 2 + 0.3 * x * y * y)])
     faces = np.stack([number[:-1, :-1], number[1:, :-1], number[1:, 1:], number[:-1, 1:]], axis=-1).reshape(-1, 4)
     free_side = number[-1, 1:-1].tolist() if name in ("cable", "sliding") else []
     rim = [p for p in np.setdiff1d(number, number[1:-1, 1:-1]).tolist() if p not in free_side]
     targets = points[rim].copy()
-    targets[: MESH + 1, 2] += shift
+    targets[: mesh + 1, 2] += shift
     forces: list[dict[str, Any]] = [
         {"kind": "soapfilm", "name": "film", "mesh": "skin", "tension": tension},
         {"kind": "pressure", "name": "air", "mesh": "skin", "pressure": pressure},
     ]
-    side = [number[-1, j].item() for j in range(MESH + 1)]
+    side = [number[-1, j].item() for j in range(mesh + 1)]
     if name == "cable":
         pairs = [[a, b] for a, b in pairwise(side)]
         forces.append({"kind": "springs", "particles": pairs, "stiffness": 40.0, "rest_length": 0.2})
     if name == "sliding":
         forces.append({"kind": "pull_to_curve", "particles": free_side, "curve": points[side], "strength": 1e3})
     if name == "fin":  # a second film on the line in the middle, so that three meet there
-        middle = number[MESH // 2]
+        middle = number[mesh // 2]
         fin = points[middle] - [0.0, 0.0, 0.5]
-        new = len(points) + np.arange(MESH + 1)
+        new = len(points) + np.arange(mesh + 1)
         points = np.vstack([points, fin])
         strip = np.stack([middle[:-1], middle[1:], new[1:], new[:-1]], axis=-1)
         faces, rim, targets = np.vstack([faces, strip]), [*rim, *new.tolist()], np.vstack([targets, fin])
         forces[1]["mesh"] = "roof"
     skin = {"vertices": points.tolist(), "faces": faces.tolist()}
-    roof = {"vertices": points.tolist(), "faces": faces[: MESH**2].tolist()}
+    roof = {"vertices": points.tolist(), "faces": faces[: mesh**2].tolist()}
     return {
         "particles": points.tolist(),
         "meshes": {"skin": skin, "roof": roof},
@@ -98,6 +99,23 @@ def test_a_search_through_a_coarse_film_ends_where_its_goals_are_met() -> None:
     found = design(problem)
     assert found.status == "converged" and found.goals[0]["met"] and found.objective < 1e-16
     assert found.variables[0]["value"] == pytest.approx(0.9, rel=1e-6)
+
+
+@pytest.mark.slow
+def test_films_of_more_than_a_thousand_particles_have_derivatives_of_whole_solves_along_them() -> None:
+    """How a vertex moves within the film as the pressure grows; across the film alone it would be three times as
+    much."""
+    mesh = 34
+    goal = {"kind": "position", "particles": [(mesh + 1) * (mesh // 4) + mesh // 3], "axes": "x"}
+    air = [{**VARIABLES[0], "tie": "all"}]
+
+    def at(pressure: float) -> Any:
+        return sensitivity(saddle("plain", pressure, mesh=mesh), goals=[goal], variables=air)
+
+    found, (before, after) = at(0.4), (at(0.4 - STEP).value, at(0.4 + STEP).value)
+    assert not found.warnings and len(found.result.particles) > 1000
+    # of second order: 1e-6, as the pressure is of size 1
+    assert found.gradient[0][0] == pytest.approx((after - before) / (2.0 * STEP), rel=1e-5)
 
 
 def test_films_of_many_particles_are_differentiated_across(monkeypatch: pytest.MonkeyPatch) -> None:

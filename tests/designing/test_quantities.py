@@ -185,6 +185,7 @@ def test_a_range_asks_for_nothing_within_it() -> None:
         ({"kind": "frequency", "mode": 99}, "/goals/0/mode", "there are 36 free axes"),
         ({"kind": "length", "force": "net", "target": 1, "lower": 0}, "/goals/0/target", "not both"),
         ({"kind": "length", "force": "net", "lower": 2, "upper": 1}, "/goals/0/lower", "more than upper"),
+        ({"particles": [1], "axes": "z"}, "/goals/0", "kind is required; known: position, offset, length"),
     ],
 )
 def test_faults_say_where_and_what(given: dict[str, Any], pointer: str, said: str) -> None:

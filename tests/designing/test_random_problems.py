@@ -84,6 +84,6 @@ def test_goals_that_conflict_much_do_not_end_early(twist: str) -> None:
 
 @pytest.mark.soak
 def test_the_last_digits_along_a_limit_are_found() -> None:
-    """A valley that a curved limit crosses: 1.6e-4 lower than where slopes are first slight, 98.8546, SciPy ends."""
+    """A curved valley along a curved limit: SciPy ends at 98.83399, 2e-4 lower than where slopes are first slight."""
     found = hookean.design(case_of(140, "scaled").problem())
-    assert found.status == "converged" and found.objective < 98.84
+    assert found.status == "converged" and found.objective < 98.8341

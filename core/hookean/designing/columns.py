@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from functools import cache
+from functools import cache, cached_property
 from typing import TYPE_CHECKING, Annotated, Any
 
 import numpy as np
@@ -44,7 +44,7 @@ class Entries:
     values: Floats
     tie: Ints
 
-    @property
+    @cached_property
     def count(self) -> int:
         """How many unknowns there are."""
         return int(self.tie.max(initial=-1)) + 1
@@ -53,8 +53,8 @@ class Entries:
     def start(self) -> Floats:
         """The mean value (count,) of the entries of each unknown."""
         kept = self.tie >= 0
-        sums = np.bincount(self.tie[kept], self.values[kept], self.count)
-        return np.asarray(sums / np.bincount(self.tie[kept], minlength=self.count))
+        tie, values = (self.tie.ravel(), self.values.ravel()) if kept.all() else (self.tie[kept], self.values[kept])
+        return np.asarray(np.bincount(tie, values, self.count) / np.bincount(tie, minlength=self.count))
 
     def with_values(self, unknowns: Floats) -> Floats:
         """All numbers (m, c), those that vary with these values (count,)."""
@@ -270,8 +270,10 @@ class Column:
         if not np.array_equal(whole.parameters[:, own], given):  # worked out from another column
             return []
         moved = entries.values + np.column_stack([self._steps(column) for column in range(len(own))])
-        fresh = compiled(system, self.group, self.number, self._with(system.scene, moved)).parameters
-        if not np.array_equal(np.delete(fresh, own, axis=1), np.delete(whole.parameters, own, axis=1)):
+        other = self.force.replaced(**{self.variable.field: self._field(moved)})  # nobody sees it: no check
+        fresh = compiled(system, self.group, self.number, other).parameters
+        others = [i for i in range(len(whole.names)) if i not in own]
+        if not all(np.array_equal(fresh[:, i], whole.parameters[:, i]) for i in others):
             return []
         found = []
         for column in np.flatnonzero((entries.tie >= 0).any(axis=0)):

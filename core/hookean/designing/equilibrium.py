@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from hookean.designing.cycles import LEFT, Cycles
 from hookean.designing.even_films import Even, evenness
-from hookean.designing.factors import Factored, Orders, Patterned
+from hookean.designing.factors import Factored, Orders, Patterned, same
 from hookean.designing.resting import resting
 from hookean.forces.base import lengths
 from hookean.running.result import Result
@@ -35,7 +35,6 @@ NEAR = 1e-8  # residual [-] from which exact steps are tried first
 SOFTER = 1e-6  # part of the stiffness by which yielding differs from rounding
 SLIGHT = 1e-8  # part of the model's size: a step after which the tangent is the same
 NOTHING = 1e-15  # part of the diagonal: entries of the tangent that are rounding
-ALIKE = 1e-14  # part of the largest entry by which equal tangents differ
 POLISH = 6  # exact steps after that, while each leaves less
 ROUNDING = 10.0  # times the rounding floor: what is out of balance there is rounding
 ROUGH = 1e-4  # part that such a step may leave of the little that is out of balance
@@ -116,7 +115,7 @@ class Equilibrium:
         if self._tangent is not None or self.even is not None:
             total[places] = (self.response.T @ y)[places]
             return total
-        for axes, blocks in _blocks(self.system, self.state, np.unique(places // 3)):
+        for axes, blocks in _blocks(self.system, self.state, places // 3):
             total += np.bincount(axes.ravel(), np.einsum("eab,ea->eb", blocks, y[axes]).ravel(), len(total))
         kept = np.zeros(len(total))
         kept[places] = total[places]
@@ -171,10 +170,7 @@ class Equilibrium:
 
     def take_factor(self, other: Equilibrium) -> bool:
         """Use the factors of another equilibrium if both have the same tangent; whether that was so."""
-        one, two = self.reduced, other.reduced
-        same = one.shape == two.shape and one.nnz == two.nnz and self.system.films is None
-        same = same and np.array_equal(one.indices, two.indices) and np.array_equal(one.indptr, two.indptr)
-        if same and not np.abs(one.data - two.data).max(initial=0.0) > ALIKE * np.abs(one.data).max(initial=0.0):
+        if self.system.films is None and same(self.reduced, other.reduced):
             self._factor = other.factor
             return True
         return False
@@ -359,15 +355,17 @@ def _with_motions(basis: Any, resting: dict[int, Floats]) -> Any:
 def tangent(system: System, state: State) -> Any:
     """-df/dx (3n, 3n) [force/length] as a sparse matrix, held axes included; of forces without an energy it is not
     symmetric."""
-    from scipy.sparse import coo_matrix, csc_matrix
+    from scipy.sparse import coo_matrix
 
-    n = len(state.x)
-    total = csc_matrix((3 * n, 3 * n))
+    size = state.x.size
+    none = np.zeros(0, np.int64)
+    rows, columns, values = [none], [none], [np.zeros(0)]
     for axes, blocks in _blocks(system, state, None):
-        rows = np.broadcast_to(axes[:, :, None], blocks.shape)
-        columns = np.broadcast_to(axes[:, None, :], blocks.shape)
-        total = total + coo_matrix((blocks.ravel(), (rows.ravel(), columns.ravel())), shape=total.shape).tocsc()
-    return total
+        rows.append(np.broadcast_to(axes[:, :, None], blocks.shape).ravel())
+        columns.append(np.broadcast_to(axes[:, None, :], blocks.shape).ravel())
+        values.append(blocks.ravel())
+    places = np.concatenate(rows), np.concatenate(columns)
+    return coo_matrix((np.concatenate(values), places), shape=(size, size)).tocsc()
 
 
 def _blocks(system: System, state: State, particles: Ints | None) -> Iterator[tuple[Ints, Floats]]:

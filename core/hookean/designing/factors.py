@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+ALIKE = 1e-14  # part of each entry by which equal matrices differ
+
 
 class Orders:
     """Orders of elimination that earlier factors had, for matrices of the same pattern. `way`: which kind of factors
@@ -60,8 +62,8 @@ class Factored:
             except RuntimeError:  # singular
                 self.sound = False
             return
-        for rows, alike in _blocks(matrix, axes):
-            factor = self._parts[alike][1] if alike >= 0 else orders.factor(matrix[rows][:, rows])
+        for rows, block, alike in _blocks(matrix, axes):
+            factor = self._parts[alike][1] if alike >= 0 else orders.factor(block)
             if factor is None:
                 self.sound = False
                 return
@@ -94,32 +96,29 @@ class Patterned:
         return self.pattern.spread(self.factor.solve(self.pattern.gather(b.reshape(-1, 3)))).ravel()
 
 
-def _blocks(matrix: Any, axes: Ints | None) -> list[tuple[Ints, int]]:
-    """Rows of parts that do not act on one another, and the number of an earlier part of the same entries, or -1."""
-    whole = [(np.arange(matrix.shape[0]), -1)]
+def _blocks(matrix: Any, axes: Ints | None) -> list[tuple[Ints, Any, int]]:
+    """Parts that do not act on one another: their rows, their entries, and the number of an earlier part of the same
+    entries, or -1; those of springs without rest length are the same on all axes."""
+    whole = [(np.arange(matrix.shape[0]), matrix, -1)]
     if axes is None:
         return whole
     entries = matrix.tocoo()
     if (entries.data[axes[entries.row] != axes[entries.col]] != 0.0).any():
         return whole
-    found: list[tuple[Ints, int]] = []
-    kept: list[Any] = []
+    found: list[tuple[Ints, Any, int]] = []
     for axis in range(3):
         rows = np.flatnonzero(axes == axis)
         if not len(rows):
             continue
         block = matrix[rows][:, rows].tocsc()
         block.eliminate_zeros()
-        alike = next((i for i, other in enumerate(kept) if _same(block, other)), -1)
-        found.append((rows, alike))
-        kept.append(block)
+        found.append((rows, block, next((i for i, (_, other, _) in enumerate(found) if same(block, other)), -1)))
     return found
 
 
-def _same(one: Any, other: Any) -> bool:
-    return (
-        one.shape == other.shape
-        and np.array_equal(one.indptr, other.indptr)
-        and np.array_equal(one.indices, other.indices)
-        and np.array_equal(one.data, other.data)
-    )
+def same(one: Any, other: Any) -> bool:
+    """Whether two matrices differ by the rounding of sums alone, entry by entry: small entries may be all that holds
+    a soft part."""
+    alike = one.shape == other.shape and one.nnz == other.nnz
+    alike = alike and np.array_equal(one.indptr, other.indptr) and np.array_equal(one.indices, other.indices)
+    return bool(alike and (np.abs(one.data - other.data) <= ALIKE * np.abs(one.data)).all())

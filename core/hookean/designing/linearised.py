@@ -4,9 +4,9 @@ At rest K dx = F du on the free motions, and goals change by G dx + D du. The da
 min |r + G dx + D du|² + m |du|² with equilibrium as a constraint, is one sparse symmetric system of the residuals, the
 motions and the multipliers of equilibrium. In units in which all parts have one size, with A = [D; -F] and s = sqrt(m):
 
-    [ -m I  G   . ]                      [ p ]   [ -s r ]
-    [ G^T   .  K^T] - A A^T on p and l,  [ d ] = [   0  ],    dx = d / s,  du = -A^T [p; l] / s.
-    [  .    K   . ]                      [ l ]   [   0  ]
+    [ -m I  .   G ]                      [ p ]   [ -s r ]
+    [   .   .   K ] - A A^T on p and l,  [ l ] = [   0  ],    dx = d / s,  du = -A^T [p; l] / s.
+    [  G^T  K^T . ]                      [ d ]   [   0  ]
 
 Unknowns that touch many rows stay in the system, so that it is sparse. Parts of the net that no goal depends on are
 left out. Source: Levenberg 1944, Marquardt 1963; the full system as in Nocedal and Wright, Numerical Optimization,
@@ -61,8 +61,10 @@ class Linearised:
         self.means, self.spread = _means(centred, [s[0].shape[0] for s in slopes])
         self.found, self.orders = found, orders
         self.goals = (by_place @ found.basis).tocsr()  # G (k, r)
-        self.direct = ((direct + by_place @ moves) @ diags(scale)).tocsc()  # D (k, u)
-        pushes = found.counted(forces) - found.response @ moves
+        pushes = found.counted(forces)
+        if moves.nnz:
+            direct, pushes = direct + by_place @ moves, pushes - found.response @ moves
+        self.direct = (direct @ diags(scale)).tocsc()  # D (k, u)
         self.pushes = (found.basis.T @ pushes @ diags(scale)).tocsc()  # F (r, u)
 
     def transposed(self, r: Floats) -> Floats:
@@ -80,49 +82,48 @@ class Linearised:
     def step(self, r: Floats, damping: float, free: Bools, sizes: Floats | None = None) -> Floats | None:
         """The damped step (u,) of the free unknowns for residuals r (k,), None if it has none. Changes are damped in
         parts of the `sizes` (u,) of the unknowns."""
-        from scipy.sparse import bmat, diags, identity, vstack
+        from scipy.sparse import bmat, diags, identity
 
-        goals, tangent, direct, pushes = self._with_means
+        both, spread = self._with_means  # [G; K] and A
         by = np.ones(len(free)) if sizes is None else sizes
-        spread = (vstack([direct, -pushes]) @ diags(by)).tocsc()[:, np.flatnonzero(free)]
-        wide = np.diff(spread.indptr) > DENSE
-        thin, thick = spread[:, np.flatnonzero(~wide)], spread[:, np.flatnonzero(wide)]
-        squares = -(thin @ thin.T).tocsr()
-        k, m = goals.shape
-        corner = squares[:k, :k] - damping * identity(k)
-        system = bmat(
-            [
-                [corner, goals, squares[:k, k:], thick[:k]],
-                [goals.T, None, tangent.T, None],
-                [squares[k:, :k], tangent, squares[k:, k:], thick[k:]],
-                [thick[:k].T, None, thick[k:].T, identity(thick.shape[1])],
-            ],
-            format="csc",
-        )
+        own = spread if free.all() else spread[:, np.flatnonzero(free)]
+        own = type(own)((own.data * np.repeat(by[free], np.diff(own.indptr)), own.indices, own.indptr), own.shape)
+        k, m = len(r), both.shape[1]
+        damped = diags(np.repeat([damping, 0.0], [k, m]))
+        wide = np.diff(own.indptr) > DENSE
+        if wide.any():
+            thin, thick = own[:, np.flatnonzero(~wide)], own[:, np.flatnonzero(wide)]
+            corner = -(thin @ thin.T) - damped
+            unit = identity(thick.shape[1])
+            system = bmat([[corner, both, thick], [both.T, None, None], [thick.T, None, unit]], format="csc")
+        else:
+            system = bmat([[-(own @ own.T) - damped, both], [both.T, None]], format="csc")
         right = np.concatenate([-np.sqrt(damping) * r, np.zeros(system.shape[0] - k)])
         solved = _solved(system, right, self.orders)
         if solved is None:
             return None
-        both = np.concatenate([solved[:k], solved[k + m : k + 2 * m]])
         step = np.zeros(len(free))
-        step[np.flatnonzero(free)] = -(spread.T @ both) / np.sqrt(damping)
+        step[free] = -(own.T @ solved[: k + m]) / np.sqrt(damping)
         step *= by
         return step if np.isfinite(step).all() else None
 
     @cached_property
-    def _with_means(self) -> tuple[Any, Any, Any, Any]:
-        """G, K, D and F with the means of centred values as further motions, so that all stay sparse: m = mean(G x + D
-        u), residuals G x + D u - m."""
+    def _with_means(self) -> tuple[Any, Any]:
+        """[G; K] and A = [D; -F] with the means of centred values as further motions, so that all stay sparse: m =
+        mean(G x + D u), residuals G x + D u - m."""
         from scipy.sparse import bmat, diags, hstack, identity, vstack
 
         seen = self._seen()
-        by, goals, tangent = diags(self.weights), self.goals[:, seen], self.found.reduced[seen][:, seen]
+        by, goals, tangent, pushes = diags(self.weights), self.goals, self.found.reduced, self.pushes
+        if len(seen) < tangent.shape[0]:
+            goals, tangent, pushes = goals[:, seen], tangent[seen][:, seen], pushes[seen]
+        direct = by @ self.direct
         if not self.means.shape[0]:
-            return by @ goals, tangent, by @ self.direct, self.pushes[seen]
+            return vstack([by @ goals, tangent]), vstack([direct, -pushes], format="csc")
         size = float(np.abs(tangent.data).max(initial=0.0)) or 1.0
         rows = [[tangent, None], [-size * (self.means @ goals), size * identity(self.means.shape[0])]]
-        pushes = vstack([self.pushes[seen], size * (self.means @ self.direct)])
-        return by @ hstack([goals, -self.spread]), bmat(rows, format="csr"), by @ self.direct, pushes
+        pushes = vstack([pushes, size * (self.means @ self.direct)])
+        return vstack([by @ hstack([goals, -self.spread]), bmat(rows)]), vstack([direct, -pushes], format="csc")
 
     def _seen(self) -> NDArray[np.int64]:
         """Free motions that a goal depends on."""

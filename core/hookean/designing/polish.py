@@ -2,7 +2,8 @@
 
 With multipliers l of the constraints c that hold, the Lagrangian f - l . c has derivatives by one solve, and second
 derivatives H by their differences, two equilibria for each unknown. A step goes back to the limits by the shortest way
-and, across their slopes, to where H has the slope vanish, or less far where that gains nothing (Levenberg 1944).
+and, across their slopes, to where H has the slope vanish, or less far where that gains nothing (Levenberg 1944). From
+there it goes back to the limits once more, for they are curved (second-order corrections).
 Source: Nocedal and Wright, Numerical Optimization, 2006, chapter 18.
 """
 
@@ -31,9 +32,10 @@ OFF = 1e-9  # part of the size of values: nearer to their limit they are at it
 NOTHING = 1e-14  # part of the first objective: what is left is rounding
 STEP = 1e-4  # of an unknown's size, of differences of second order: 1e-8, and rounding of slopes by 1e-5
 STRAIGHT = 1e-12  # part of the largest curvature: that of directions that have less
-DAMPINGS = (0.0, 1e-9, 1e-7, 1e-5, 1e-3, 0.1)  # parts of the largest curvature, added to all
+DAMPINGS = (0.0, *(10.0**-k for k in range(10, 0, -1)))  # parts of the largest curvature, added to all
 SHORT = (1e-3, 1e-4, 1e-5, 1e-6)  # of an unknown's size, of steps straight down: near a snap, where nothing else leads
 SHORTER = (1.0, 0.9, 0.5)  # parts of a step to a limit, which may be nearer than by its slope
+BACK = 3  # ways back to limits after a step
 GAIN = 1e-12  # part of the objective: a step that gains less is the last
 
 
@@ -47,7 +49,9 @@ class Here:
     slope: Floats  # of the Lagrangian (u,)
     free: Bools  # unknowns that no bound holds
     rows: NDArray[np.int64]  # limits that hold, among all values of constraints
+    limits: Floats  # of these
     off: Floats  # what these are off their limits
+    by: Floats  # derivatives (k, u) of all values of constraints
 
 
 def polish(search: Search) -> None:
@@ -76,7 +80,8 @@ def _here(search: Search) -> Here | None:
     flat = not np.abs(slope).max(initial=0.0) > SLOPE * abs(value)
     if free.sum() > MOST or (flat and not (np.abs(off) > OFF * _sizes(search)[rows]).any()):
         return None
-    return Here(y, found, gained, slope, free, rows, off)
+    by = constraint_slopes(search, found) if search.problem.constraints else np.zeros((0, len(free)))
+    return Here(y, found, gained, slope, free, rows, nearer[rows], off, by)
 
 
 def _sizes(search: Search) -> Floats:
@@ -93,15 +98,32 @@ def limits_at(search: Search, found: Equilibrium) -> tuple[Floats, Floats, Float
 
 def _step(search: Search, here: Here) -> bool:
     """One step; whether another one may gain more."""
-    steps = _newton(search, here)
     before, value = _merit(search, here, here.y), abs(search.best[1])
-    for step in steps:
+    for step in _newton(search, here):
         y = np.clip(here.y + step, *search.bounds)
-        merit = _merit(search, here, y)
-        if merit < before:
-            search.take(y)
-            return before - merit > GAIN * value
+        for end in (_onto_limits(search, here, y), y) if len(here.rows) else (y,):
+            merit = _merit(search, here, end)
+            if merit < before:
+                search.take(end)
+                return before - merit > GAIN * value
     return False
+
+
+def _onto_limits(search: Search, here: Here, y: Floats) -> Floats:
+    """Unknowns from which the limits that hold are met, by the shortest way there; `y` where that does not lead on."""
+    new, by, last = y, here.by[here.rows][:, here.free], np.inf
+    for _ in range(BACK):
+        found = search.at(new)
+        off = limits_at(search, found)[0][here.rows] - here.limits if found.converged else np.array([np.inf])
+        parts = float(np.abs(off / _sizes(search)[here.rows]).max())
+        if not parts < last:
+            return y
+        if parts <= OFF:
+            break
+        new, last = new.copy(), parts
+        new[here.free] -= np.linalg.lstsq(by, off, rcond=1e-10)[0]
+        new = np.clip(new, *search.bounds)
+    return new
 
 
 def _merit(search: Search, here: Here, y: Floats) -> float:
@@ -117,8 +139,7 @@ def _merit(search: Search, here: Here, y: Floats) -> float:
 def _newton(search: Search, here: Here) -> list[Floats]:
     """Steps (u,), each more damped than the one before, then straight down; none without second derivatives."""
     free, count = here.free, int(here.free.sum())
-    every = constraint_slopes(search, here.found) if search.problem.constraints else np.zeros((0, len(free)))
-    by = every[here.rows][:, free]
+    by = here.by[here.rows][:, free]
     hessian = _hessian(search, here)
     if hessian is None:
         return []
@@ -132,7 +153,7 @@ def _newton(search: Search, here: Here) -> list[Floats]:
         step = np.zeros(len(free))
         step[free] = back - across @ (turned @ ((turned.T @ slope) / np.where(bent > 0.0, bent, np.inf)))
         if np.isfinite(step).all():
-            length = _length(search, here, every @ step)
+            length = _length(search, here, here.by @ step)
             steps += [step * length * part for part in (SHORTER if length < 1.0 else SHORTER[:1])]
     down, size = across @ (across.T @ here.slope[free]), float(np.linalg.norm(across.T @ here.slope[free]))
     for length in SHORT if size > 0.0 else ():
@@ -146,7 +167,7 @@ def _length(search: Search, here: Here, changes: Floats) -> float:
     """The part of a step, at most 1, after which the first limit holds that does not yet (equation 16.41 there)."""
     values, low, high = limits_at(search, here.found)
     room = np.where(changes > 0.0, high - values, low - values)
-    room[here.rows] = np.inf * np.sign(changes[here.rows])  # these are held by the step itself
+    room[here.rows] = np.copysign(np.inf, changes[here.rows])  # these are held by the step itself
     ways = (changes != 0.0) & (np.sign(room) == np.sign(changes))
     return float(min(1.0, (room[ways] / changes[ways]).min(initial=1.0)))
 

@@ -12,7 +12,7 @@ It is the same in Python, JSON and TOML.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self, Union
+from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
 
 import numpy as np
 from pydantic import StrictInt, StrictStr, model_validator
@@ -29,7 +29,7 @@ from hookean.values.fields import Field, Maybe, Part, Parts
 if TYPE_CHECKING:
     AnyQuantity = Quantity
 else:
-    AnyQuantity = Annotated[Union[tuple(QUANTITIES.values())], ByKind(QUANTITIES)]  # noqa: UP007
+    AnyQuantity = Annotated[Quantity, ByKind(QUANTITIES)]
 
 Axes = Literal["x", "y", "z", "xy", "xz", "yz", "xyz"]
 PARTICLES = ("drawn", "mass")

@@ -236,7 +236,7 @@ class Unknowns:
     def led(self) -> Ints:
         """The coordinates, of (3n,), that anchors among the variables move."""
         rows = [_led(variable)[0] for variable, _ in self.parts if isinstance(variable, Moved | DrawnAnchor)]
-        return np.unique(np.concatenate([NOTHING, *rows]))
+        return np.flatnonzero(np.bincount(np.concatenate([NOTHING, *rows])))
 
 
 def _kind(variable: Variable) -> type[Column | Moved | Drawn | Mass]:

@@ -8,5 +8,9 @@
   `sparse_factors` solves it and counts negative eigenvalues; `directions` puts another in its place where lines vanish.
 - `spring_cg` works on springs without a matrix, `profile_cholesky` inside compiled loops on chains.
 
-Both hierarchies use `aggregation`.
+Both hierarchies use `aggregation`. SciPy's sparse matrices load without what of NumPy they do not use (`put_off`).
 """
+
+from hookean.linear.put_off import NUMPY, put_off
+
+put_off("numpy", NUMPY)

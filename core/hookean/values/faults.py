@@ -164,7 +164,8 @@ def _inside(hint: Any, step: Any) -> list[Any]:
             found.append(inner[1])
         elif _is_model(option):
             if step in option.model_fields:
-                found.append(option.model_fields[step].annotation)
+                field = option.model_fields[step]  # pydantic takes the notes of its annotation apart
+                found.append(Annotated[(field.annotation, *field.metadata)] if field.metadata else field.annotation)
             elif "kind" in option.model_fields and step == option.called:
                 found.append(option)
     return found
