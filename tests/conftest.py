@@ -23,7 +23,7 @@ settings.register_profile(
 settings.load_profile("untimed")
 
 
-WAITING = ("server", "faults", "components")
+WAITING = ("faults", "components", "server")
 """Folders whose tests wait for other processes half of the time."""
 COMPUTING = ("docs", "tests", "fuzz", "canvas", "laws", "files")
 """Folders whose tests keep a processor busy; all others follow. In both the longest tests come first, so that no worker

@@ -46,6 +46,7 @@ def test_files_that_grasshopper_saved_are_converted_both_ways(tmp_path: Path) ->
         there_and_back(file, tmp_path)
 
 
+@pytest.mark.soak
 def test_definitions_of_the_figures_are_converted_both_ways(tmp_path: Path) -> None:
     read = [file for file in OURS if not file.read_bytes().startswith(b"version https://git-lfs")]
     if not read:

@@ -111,6 +111,7 @@ def imported(data: bytes, suffix: str) -> int:
     return found.exit_code
 
 
+@pytest.mark.soak
 @settings(max_examples=CASES, deadline=None)
 @given(st.integers(0, len(SAMPLES) - 1), st.sampled_from(FORMS), st.integers(0, 2**32 - 1))
 @example(2, "xml", 0)

@@ -273,6 +273,7 @@ KINDS = [("Length(Line)", "Line"), ("Load", "P"), ("EdgeLengths", "Mesh"), ("G2"
 TRANSLATED = {"Length(Line)", "Load", "EdgeLengths", "Show"}
 
 
+@pytest.mark.soak
 @settings(max_examples=400 if SOAK else 20, deadline=None)
 @given(st.data())
 def test_of_any_solvers_and_goals_each_system_is_translated_whole_or_not_at_all(data: st.DataObject) -> None:

@@ -72,6 +72,7 @@ def pressed(seed: int) -> Spec:
     return {"particles": x, "forces": forces, "anchors": [{"particles": rim}], "settings": {}}
 
 
+@pytest.mark.thinned
 @pytest.mark.slow
 @pytest.mark.parametrize("family", sampled(("pressed", *(f for f in FAMILIES if f != "shell"), "shell"), 3))
 def test_a_stable_shape_has_no_lower_one_beside_it(family: str) -> None:

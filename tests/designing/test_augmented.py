@@ -97,6 +97,7 @@ def test_goals_that_are_minimised_have_roots() -> None:
     assert chosen(Search(Problem.read({**problem, "goals": [shape]}))) == "slsqp"
 
 
+@pytest.mark.soak
 def test_limits_that_contradict_one_another_are_infeasible() -> None:
     """Links cannot be shorter than the straight way between supports."""
     problem = limited(4, method="augmented_lagrangian")

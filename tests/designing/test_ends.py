@@ -59,6 +59,7 @@ def test_methods_that_make_no_headway_hand_over(monkeypatch: pytest.MonkeyPatch)
         assert found.result.particles[1, 2] == pytest.approx(-0.5, rel=1e-5)
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("side", [{"lower": -0.7}, {"upper": 0.0, "lower": -0.7}])
 def test_steps_to_the_last_digits_end_at_limits(side: dict[str, float]) -> None:
     """Steps that would pass a limit end there, and go on along it: from a sag of 0.38 to one of 0.7 where one of 0.9 is

@@ -45,6 +45,7 @@ def found() -> Exploration:
     return hookean.explore(problem(), 20)
 
 
+@pytest.mark.soak
 def test_samples_have_the_values_of_the_closed_form(found: Exploration) -> None:
     """Sag P / 2q, load path 2 q L2 = 2 q (1 + (P / 2q)2); beyond q = P / 2 less sag is more path: stiffer strings
     alone are on the front."""

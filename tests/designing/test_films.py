@@ -73,6 +73,7 @@ def slope(name: str, goal: dict[str, Any], **way: float) -> float:
     return (8.0 * (value(1.0) - value(-1.0)) - (value(2.0) - value(-2.0))) / (12.0 * STEP)
 
 
+@pytest.mark.thinned
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["plain", "cable", "sliding", "fin"])
 def test_derivatives_through_a_coarse_film_are_those_of_whole_solves(name: str) -> None:

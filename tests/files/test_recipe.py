@@ -342,7 +342,7 @@ def _places(value: Any, at: tuple[Any, ...] = ()) -> list[tuple[Any, ...]]:
     return [at, *(place for key, item in inner for place in _places(item, (*at, key)))]
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_no_odd_value_anywhere_gets_past_as_anything_but_a_sentence(draw: Callable[..., Any]) -> None:
     model = draw(NewObject(LINE, "cable"), NewObject(SQUARE, "net"))
     understand(model, FULL)

@@ -153,6 +153,7 @@ def test_values_at_their_limits_and_other_methods_are_described(
     assert [_called(case, running, checks.unsupported_method) for case in cases]
 
 
+@pytest.mark.soak
 def test_what_was_made_is_there_until_it_is_deleted(running: Served, operations: dict[str, Any]) -> None:
     """Along the links of the description, from an answer that made something to the operations on it."""
     seen: set[tuple[str, int]] = set()

@@ -150,6 +150,7 @@ def test_degenerate_positions_give_finite_forces(case: Case) -> None:
         laws.degenerate_stays_finite(named, np.ascontiguousarray(moved(case.x)), np.random.default_rng(3))
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("kind", [kind for kind, cls in KINDS.items() if cls.kernel is not None])
 def test_started_at_a_degenerate_shape_forces_are_finite(kind: str) -> None:
     """Compiled where the start shape itself is degenerate (rest lengths 0, flat hinges): still finite near and far."""
@@ -223,6 +224,7 @@ def test_declared_damping_and_memory_are_really_there() -> None:
             assert max(np.abs(c.past(rng) - c.block.memory).max() for c in own) > 0
 
 
+@pytest.mark.thinned
 @every
 def test_kernels_stay_inside_their_arrays(case: Case) -> None:
     """As plain Python with every index checked, negative ones too, a kernel gives what machine code gives."""

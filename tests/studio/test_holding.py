@@ -13,6 +13,7 @@ SIDE = 4
 EDGE = [i for i in range(SIDE**2) if i % SIDE in (0, SIDE - 1) or i // SIDE in (0, SIDE - 1)]
 
 
+@pytest.mark.soak
 def test_the_rim_of_a_carried_mesh_is_held_and_selected(tab: Studio):
     """Springs are given by particles, and the mesh rides on them, as in the figures: its edge is the rim all the
     same. That nothing is held is read once, above the button."""

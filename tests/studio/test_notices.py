@@ -116,6 +116,7 @@ def test_a_load_on_a_scene_of_a_mesh_is_added_undone_and_removed(open_studio: Op
     studio.until(lambda: kinds() == ["springs", "unary"])
 
 
+@pytest.mark.soak
 def test_to_rest_is_what_relax_finds(open_studio: Opened) -> None:
     studio = session(open_studio, CABLE, "to-rest")
     wanted = relax(Scene.read(CABLE))

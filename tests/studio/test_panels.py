@@ -84,6 +84,7 @@ def test_a_number_is_typed_and_a_wrong_one_is_refused_in_a_sentence(cable: Studi
     assert service.scene(key)["forces"][0]["stiffness"] == 2500
 
 
+@pytest.mark.soak
 def test_what_is_clicked_is_told_with_units(cable: Studio):
     """A particle's place and reaction, a spring's length, force and strain: the numbers of the service."""
     page, service, key = cable.page, cable.service, cable.key

@@ -160,6 +160,7 @@ LEFT = """() => [...document.querySelectorAll("button, a[href], input, select, s
     .map((one) => one.outerHTML.slice(0, 100))"""
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("where", sampled(["session", "start"], 2))
 def test_every_control_is_reached_by_tab_and_seen_to_be(open_studio: Opened, where: str):
     studio = shown(open_studio, where, LAPTOP, "light")

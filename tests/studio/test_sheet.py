@@ -221,6 +221,7 @@ def test_the_recipe_is_edited_and_saved(studio: Studio, roof: Path, tmp_path: Pa
     assert studio.service.scene(studio.key)["forces"][0]["stiffness"] == 750
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("size", sampled([PHONE, LAPTOP], 2))
 def test_it_is_readable(open_studio: Opened, roof: Path, size: dict[str, int]) -> None:
     """It fits the window, and axe finds nothing serious."""

@@ -26,6 +26,7 @@ def cable(tab: Studio) -> Studio:
     return tab
 
 
+@pytest.mark.soak
 def test_springs_are_sorted_selected_and_saved(cable: Studio):
     """Order, values and units are those of the Python API (float32 frames: 1e-6 relative); a bar of the histogram
     leaves its springs in the table; CSV has all rows in their order."""
