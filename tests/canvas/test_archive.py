@@ -128,6 +128,7 @@ def test_items_are_sorted_as_dotnet_sorts_them_whatever_the_order_they_came_in()
 # ------------------------------------------------------------------------------------------------------ any archive
 
 
+@pytest.mark.soak
 @settings(max_examples=CASES, deadline=None)
 @given(chunks(TEXT))
 def test_any_archive_comes_back_from_binary(chunk: Chunk) -> None:

@@ -72,6 +72,7 @@ def assembly(name: str, inputs: tuple[str, str], shapes: list[Any], kind: str, f
     return d
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("framed", [True, False])
 @pytest.mark.parametrize(
     ("name", "inputs", "shapes", "kind"),

@@ -221,6 +221,7 @@ def test_every_component_works(version: str, place: Path, home: Home) -> None:
         assert any(value not in (None, []) for value in answer["outputs"].values()), step["name"]
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("version", PYTHONS)
 def test_the_cable_hangs_as_it_should(version: str, place: Path, home: Home) -> None:
     """The figure's closed form, with the geometry and forces in the trees they came in."""
@@ -246,6 +247,7 @@ def test_all_pythons_give_the_same_numbers(version: str, place: Path, home: Home
             assert name in LOOSE or same, (step["name"], name)
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("version", PYTHONS)
 def test_with_nothing_connected_there_is_at_most_one_sentence(version: str, tmp_path: Path) -> None:
     """No server either; nothing raises, and the sentence says what to connect."""

@@ -28,6 +28,7 @@ def level(**more: Any) -> dict[str, Any]:
     return {"kind": "position", "particles": [1], "axes": "z", **more}
 
 
+@pytest.mark.soak
 def test_an_objective_without_end_is_reported() -> None:
     """The longer the string the lower it hangs: no lowest shape. The variable is named and the shape is at rest."""
     variable = {"force": "string", "field": "rest_length", "tie": "all"}
