@@ -25,6 +25,8 @@ settings.load_profile("untimed")
 
 WAITING = ("faults", "components", "server")
 """Folders whose tests wait for other processes half of the time."""
+PATIENT = ("test_visits.py", "test_guard.py")
+"""Files among them that wait for limits of half a minute: the first."""
 COMPUTING = ("docs", "tests", "fuzz", "canvas", "laws", "files")
 """Folders whose tests keep a processor busy; all others follow. In both the longest tests come first, so that no worker
 is left alone with one of them."""
@@ -120,7 +122,9 @@ def order(items: list[pytest.Item]) -> None:
     folders = {unit(item.nodeid): item.path.parent.name for item in items}
     places = {name: -1.0 for name in units if folders[name] == "studio"}
     rank = {folder: place for place, folder in enumerate((*WAITING, *COMPUTING))}
-    others = sorted((name for name in units if name not in places), key=lambda name: rank.get(folders[name], len(rank)))
+    patient = {name for name in units if name.endswith(PATIENT)}
+    others = [name for name in units if name not in places]
+    others.sort(key=lambda name: (name not in patient, rank.get(folders[name], len(rank))))
     for waits in (True, False):
         row = [name for name in others if (folders[name] in WAITING) is waits]
         places.update((name, place / len(row)) for place, name in enumerate(row))
