@@ -75,8 +75,8 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
 def pytest_runtest_setup(item: pytest.Item) -> None:
     """Let the studio's tests go first: they take longest, one after the other, and wait for much."""
     beside = hasattr(os, "nice") and "PYTEST_XDIST_WORKER" in os.environ and item.path.parent.name != "studio"
-    if beside and os.nice(0) < BEHIND:
-        os.nice(BEHIND)
+    if beside and (now := os.nice(0)) < BEHIND:  # at once: services that start later have the same
+        os.nice(BEHIND - now)
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
