@@ -15,7 +15,7 @@ HANG = 60.0
 
 
 def test_a_part_runs_when_something_of_it_is_asked_for(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Once; a part that is loaded stays as it is, and one that does not exist is none."""
+    """Once. A part that is loaded stays as it is; one that does not exist is skipped."""
     folder = tmp_path / "boxes"
     folder.mkdir()
     (folder / "__init__.py").write_text("ran = []\n")

@@ -69,7 +69,7 @@ AREA = BREAKS / 1570e3
     ],
 )
 def test_a_frozen_cable_of_a_section_has_its_stress(stage: Any) -> None:
-    """T / A, of each case and as an extreme; without a strength there is no utilisation, and the report says so."""
+    """T / A, of each case and as an extreme; without a strength, the report names the missing utilisation."""
     scene = Scene.read(cable(**stage))
     found = hookean.load_cases(scene)
     own = found.cases["snow"].result.force("cable")

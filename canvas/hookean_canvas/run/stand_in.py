@@ -401,7 +401,7 @@ class DataTree(_Generic):
         return self._items[path[0] if isinstance(path[0], GH_Path) else GH_Path(*path)]
 
     def EnsurePath(self, *path):
-        """Make a path that there is none of yet."""
+        """Add a path without items, unless it is there; returns it."""
         wanted = path[0] if isinstance(path[0], GH_Path) else GH_Path(*path)
         self._items.setdefault(wanted, [])
         return wanted
@@ -411,7 +411,7 @@ class DataTree(_Generic):
         self._items[self.EnsurePath(path or GH_Path(0))].append(item)
 
     def AddRange(self, items, path=None):
-        """Put items at the end of a path; one that there is none of yet is made for items alone."""
+        """Put items at the end of a path, which is made if it is new and there are items."""
         given = list(items)
         if given:
             self._items[self.EnsurePath(path or GH_Path(0))].extend(given)

@@ -71,7 +71,7 @@ NEEDED = {
 _SCOPES = ("force", "layer", "anchor")
 CARRIED = ("reaction", "contact")
 """The kinds of rows of what supports and floors carry."""
-TOUCHING = 1e-12  # height above a floor, / coordinates, that is none
+TOUCHING = 1e-12  # height above a floor, / coordinates, that counts as 0
 
 
 @dataclass(eq=False)

@@ -22,5 +22,5 @@ def put_off(package: str, parts: tuple[str, ...]) -> None:
         spec.loader = LazyLoader(spec.loader)
         module = module_from_spec(spec)
         sys.modules[name] = module
-        spec.loader.exec_module(module)  # which says what to run later
+        spec.loader.exec_module(module)  # runs nothing of it yet
         setattr(sys.modules[package], part, module)

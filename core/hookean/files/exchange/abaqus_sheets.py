@@ -16,7 +16,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 ALMOST = float(np.cos(np.radians(0.1)))  # nearer to x than by this, the normal leaves the first axis to z
-ROUNDING = 1e-12  # strain that is none
+ROUNDING = 1e-12  # strain that counts as 0
 THIN = 1e-3  # thickness, in mean edges, of cloth that has none
 
 
