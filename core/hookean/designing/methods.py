@@ -37,7 +37,7 @@ class Stopped(Exception):
 
 
 class Unbounded(Exception):
-    """The objective falls without end; the text is the variable that grows."""
+    """The objective falls, or the shape grows, without end; the text is a sentence without its full stop."""
 
 
 Ended = tuple[int, DesignStatus, str]

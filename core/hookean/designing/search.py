@@ -168,7 +168,7 @@ class Search:
         if missed == 0.0 and np.abs(self.at_best().x).max() > FAR * self.system.size:
             slope = self.gradient(y)
             name, way = self._called(int(np.argmax(np.abs(slope)))), "falls" if slope.min() > 0.0 else "varies"
-            raise Unbounded(f"the shape grows beyond {FAR:g} times its size as {name} {way}; give that bounds")
+            raise Unbounded(f"The shape grows beyond {FAR:g} times its size as {name} {way}; give that bounds")
 
     def _falls(self, y: Floats) -> bool:
         """Whether the objective is less twice as far out, too, or nothing is at rest there."""
@@ -184,10 +184,11 @@ class Search:
         return next(v.variable.title for v, part in parts if part.start <= number < part.stop)
 
     def _endless(self, y: Floats) -> str:
-        """Which variable has left all sizes."""
+        """Which variable has left all sizes, as a sentence."""
         number = int(np.argmax(np.abs(y)))
         name, way = self._called(number), "grows" if y[number] > 0.0 else "falls"
-        return f"{name} {way} beyond {FAR:g} times its size; give it bounds, or the goals targets"
+        said = f"{name} {way} beyond {FAR:g} times its size; give it bounds, or the goals targets"
+        return f"The objective falls without end: {said}"
 
     def gradient(self, y: Floats) -> Floats:
         """Its derivatives by scaled unknowns."""
@@ -276,7 +277,7 @@ def design(
         except Stopped:
             ended, said = DesignStatus.CANCELLED, "Stopped by the caller."
         except Unbounded as error:
-            ended, said = DesignStatus.UNBOUNDED, f"The objective falls without end: {error}."
+            ended, said = DesignStatus.UNBOUNDED, f"{error}."
             if search.best[0] > 0.0:  # what grows are penalties
                 ended, said = DesignStatus.INFEASIBLE, ""
     return answer(search, search.used or method, iterations or search.evaluations, ended, said)
