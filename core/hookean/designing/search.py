@@ -163,20 +163,23 @@ class Search:
     def check_end(self) -> None:
         """Raise Unbounded where the best so far is no minimum and a variable has left all sizes."""
         missed, _, y = self.best
-        if missed == 0.0 and np.abs(y).max() > FAR and not at_minimum(self) and self._falls(y):
-            raise Unbounded(self._endless(y))
+        if missed == 0.0 and np.abs(y).max() > FAR:
+            falls, much = self._falls(y)
+            if much or (falls and not at_minimum(self)):
+                raise Unbounded(self._endless(y))
         if missed == 0.0 and np.abs(self.at_best().x).max() > FAR * self.system.size:
             slope = self.gradient(y)
             name, way = self._called(int(np.argmax(np.abs(slope)))), "falls" if slope.min() > 0.0 else "varies"
             raise Unbounded(f"The shape grows beyond {FAR:g} times its size as {name} {way}; give that bounds")
 
-    def _falls(self, y: Floats) -> bool:
-        """Whether the objective is less twice as far out, too, or nothing is at rest there."""
+    def _falls(self, y: Floats) -> tuple[bool, bool]:
+        """Whether the objective is less twice as far out, too, or nothing is at rest there; and whether it is less by a
+        tenth: no slope is slight beside a value that large."""
         kept = self.best[1]
         found = self.at(np.clip(2.0 * y, *self.bounds))
-        falls = not found.converged or (self._objective(found) < kept and self.missed(found) == 0.0)
+        fall = kept - self._objective(found) if found.converged and self.missed(found) == 0.0 else 0.0
         self.at_best()
-        return falls
+        return not found.converged or fall > 0.0, fall > 0.1 * abs(kept)
 
     def _called(self, number: int) -> str:
         """The variable of an unknown."""
