@@ -4,8 +4,13 @@ from __future__ import annotations
 
 import asyncio
 import json
+from types import SimpleNamespace
 from typing import Any, cast
 
+from starlette.requests import Request
+
+from hookean_server.sessions import routes
+from hookean_server.sessions.conditions import Conditions
 from hookean_server.sessions.live import Live
 from hookean_server.sessions.manager import Manager
 from hookean_server.sessions.process import SessionProcess
@@ -157,3 +162,21 @@ def test_a_session_that_is_played_while_it_steps_plays() -> None:
         return playing
 
     assert asyncio.run(stepped())
+
+
+def test_a_topology_has_the_tag_of_its_own_wiring() -> None:
+    """An edit is made between the answer of the process and that to the client: a client that kept the old topology
+    under the new tag would be told by 304 that it is the new one."""
+    live = Live("a", "", dict(BEFORE), scene="scene ", wiring="before")
+
+    class Sessions:
+        def find(self, key: str) -> Live:
+            return live
+
+        async def export(self, *given: Any) -> tuple[dict[str, Any], bytes]:
+            live.wiring = "after"
+            return {**BEFORE, "wiring": "before", "notes": []}, b"{}"
+
+    request = SimpleNamespace(app=SimpleNamespace(state=SimpleNamespace(sessions=Sessions())))
+    answer = asyncio.run(routes.topology(cast(Request, request), "a", Conditions()))
+    assert answer.headers["etag"] == '"scene before"'

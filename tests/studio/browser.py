@@ -187,7 +187,7 @@ class Studio:
         drawn = self.particles
         self.until(lambda: (now := drawn()).shape == truth.shape and np.abs(now - truth).max() < within)
 
-    def until(self, true: Callable[[], Any], seconds: float = HANG, what: str = "") -> Any:
+    def until(self, true: Callable[[], Any], seconds: float = HANG / 3, what: str = "") -> Any:
         """What `true()` is, once it is; the page goes on meanwhile."""
         over = time.monotonic() + seconds
         while time.monotonic() < over:

@@ -236,8 +236,9 @@ def _attached(name: str, ending: str) -> str:
 async def _exported(
     request: Request, live: Live, when: Conditions, form: str, arrays: str = "list", view: Any = None
 ) -> Response:
+    scene = live.scene  # as it is asked for: an edit that is made before the answer is ours has another tag
     head, data = await manager(request).export(live, form, arrays, view)
-    tag = f'"{live.topology}"' if form == "topology" else live.etag(head)
+    tag = f'"{scene}{head["wiring"]}"' if form == "topology" else live.etag(head)
     headers = {"etag": tag, "cache-control": "no-cache", **claimed.warned(head["notes"])}
     answer = Response(data, media_type=FORMATS.get(form, "application/json"), headers=headers)
     return unless_same(answer, when)
