@@ -1,11 +1,12 @@
 """Bouncy: a swing that soon comes to rest. The mass of every particle is the stiffness that it feels.
 
-v' = k v + f / w; x' = x + v', by iteration. w is the lumped stiffness of the shape, in which a load weighs 1 as in
-`momentum`; k is the part of the velocity that the drag c leaves a mass m in a step h of `verlet`,
-(2 m - c h) / (2 m + c h). Masses follow the stiffness, so no vibration is faster than a radian an iteration, any
-stiffness is stable, and soft parts come to rest about as soon as stiff ones. Contacts rebound and rub as in physical
-time, with an iteration for the step. Sources: Kangaroo 2's iteration as `momentum` has it, with the 0.99 of the
-velocity that its BouncySolver keeps; for such masses, Barnes, "Form finding and analysis of tension structures by
+d = f / w; v' = k (v + d - d0) + d; x' = x + v', by iteration. w is the lumped stiffness of the shape, in which a load
+weighs 1, and d0 is d of the iteration before, as in `momentum`: d - d0 damps what is stiff, and what is soft swings. k
+is the part of the velocity that the drag c leaves a mass m in a step h of `verlet`, (2 m - c h) / (2 m + c h). Masses
+follow the stiffness, so that any is stable. Contacts rebound and rub as in physical time, with an iteration for the
+step. Drag also slows what is soft: once it has left but a part `ENDED` of a swing, k is 1, and a velocity against the
+force shrinks to 0.9, which is the iteration of `momentum`. Sources: Kangaroo 2's iteration as there, with the 0.99 of
+the velocity that its BouncySolver keeps; for such masses, Barnes, "Form finding and analysis of tension structures by
 dynamic relaxation", 1999.
 """
 
@@ -27,21 +28,44 @@ if TYPE_CHECKING:
     from hookean.system.system import System
 
 
+ENDED = 1e-6  # part of its first amplitude that is left of a swing when it counts as ended
+SHRINKS = 0.9
+
+
 @device
-def accelerate(f: Any, w: Any, a: Any) -> Any:
-    """Accelerations by iteration; returns the largest squared force."""
+def ways(f: Any, w: Any, d: Any) -> Any:
+    """The ways d that forces propose; returns the largest squared force."""
     worst = 0.0
     for i in range(f.shape[0]):
         worst = max(worst, f[i, 0] * f[i, 0] + f[i, 1] * f[i, 1] + f[i, 2] * f[i, 2])
         inverse = 1.0 / w[i] if w[i] > 0.0 else 1.0
         for c in range(3):
-            a[i, c] = f[i, c] * inverse
+            d[i, c] = f[i, c] * inverse
     return worst
 
 
+@device
+def swing(
+    x: Any, v: Any, d: Any, before: Any, k: Any, shrinks: Any, i: Any, x_before: Any, v_before: Any, a: Any
+) -> None:
+    """Velocity and place of one particle after an iteration; what impacts ask for: where and how fast it was, its
+    acceleration by iteration."""
+    along = 0.0
+    for c in range(3):
+        a[i, c] = d[i, c] + k * (d[i, c] - before[i, c])
+        x_before[i, c] = x[i, c]
+        v_before[i, c] = k * v[i, c] + 0.5 * a[i, c]  # speeds are those of half steps
+        v[i, c] = k * v[i, c] + a[i, c]
+        along += d[i, c] * (v[i, c] - d[i, c])
+        before[i, c] = d[i, c]
+    for c in range(3):
+        v[i, c] = shrinks * (v[i, c] - d[i, c]) + d[i, c] if along < 0.0 else v[i, c]
+        x[i, c] += v[i, c]
+
+
 def bouncy_loop(  # type: ignore[no-untyped-def]
-    full, hits, rests, x, v, free, load, still, f, w, a, x_before, v_before, carried, kept, loads, count, goal, slots,
-    arms,
+    full, hits, rests, x, v, free, load, still, f, w, d, before, a, x_before, v_before, carried, kept, loads, count,
+    left, goal, slots, arms,
 ):  # fmt: skip
     n = x.shape[0]
     for step in range(count):
@@ -53,17 +77,15 @@ def bouncy_loop(  # type: ignore[no-untyped-def]
         for i in range(n):
             for c in range(3):
                 f[i, c] *= free[i, c]
-                v[i, c] *= kept[i]
         supports(rests, x[:slots], v[:slots], f[:slots], carried[:slots], free[:slots], w[:slots], 1.0)
-        worst = accelerate(f, w, a)
+        worst = ways(f, w, d)
         if worst <= goal * goal:
             return step
         for i in range(n):
-            for c in range(3):
-                x_before[i, c] = x[i, c]
-                v_before[i, c] = v[i, c] + 0.5 * a[i, c]  # speeds are those of half steps
-                v[i, c] += a[i, c]
-                x[i, c] += v[i, c]
+            if step < left:
+                swing(x, v, d, before, kept[i], 1.0, i, x_before, v_before, a)
+            else:
+                swing(x, v, d, before, 1.0, SHRINKS, i, x_before, v_before, a)
         fold(x, v, slots, arms)
         impacts(hits, x_before[:slots], v_before[:slots], a[:slots], x[:slots], v[:slots], free[:slots], 1.0)
     return count
@@ -76,18 +98,25 @@ class Method(Solver):
 
     def start(self, system: System, state: State) -> None:
         """Start from rest."""
-        state.scratch.clear()
+        state.scratch = {"swung": np.zeros(1), "way": np.zeros(state.x.shape)}
         state.v[:] = 0.0
 
     def advance(self, system: System, state: State, count: int, goal: float) -> int:
         """At most `count` iterations, stopping at the first shape within `goal`."""
-        still, f, a, x_before, v_before, carried = (np.zeros_like(state.x) for _ in range(6))
+        if "swung" not in state.scratch:
+            self.start(system, state)
+        swung, before = state.scratch["swung"], state.scratch["way"]
+        still, f, d, a, x_before, v_before, carried = (np.zeros_like(state.x) for _ in range(7))
         w, half = np.zeros(len(state.x)), 0.5 * system.drag * system.scene.settings.time_step
         kept = np.maximum(system.mass - half, 0.0) / (system.mass + half)
+        keeps = float(kept.max(initial=0.0))
+        swings = np.inf if keeps == 1.0 else 2.0 * np.log(ENDED) / np.log(keeps) if keeps > 0.0 else 0.0
         own = lean(system, state, damped=False)
         done = dispatch.compiled(bouncy_loop)(
-            own.full, *contacts(system), state.x, state.v, state.free, own.load, still, f, w, a, x_before, v_before,
-            carried, kept, system.load_count, count, goal, system.slots.count, system.slots.lengths,
+            own.full, *contacts(system), state.x, state.v, state.free, own.load, still, f, w, d, before, a, x_before,
+            v_before, carried, kept, system.load_count, count, swings - swung[0], goal, system.slots.count,
+            system.slots.lengths,
         )  # fmt: skip
+        swung += done
         state.iteration += int(done)
         return int(done)
