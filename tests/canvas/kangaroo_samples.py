@@ -265,6 +265,16 @@ def wires(root: Chunk) -> set[tuple[UUID, UUID]]:
     }
 
 
+def solver_of(root: Chunk) -> str:
+    """The solver that the only settings of a translated definition have."""
+    panels = {part.id: part.container for part in parts(root)}
+    [settings] = [chunk for chunk in panels.values() if chunk is not None and chunk.value("Name") == "Hookean Settings"]
+    [given] = [port for port in inputs(settings) if str(port.value("Name")).strip("_") == "solver"]
+    panel = panels[sources(given)[0]]
+    assert panel is not None
+    return str(panel.value("UserText"))
+
+
 def _named(port: Chunk, id: UUID, name: str) -> None:
     port.put("InstanceGuid", Type.GUID, id).put("Name", Type.STRING, name).put("NickName", Type.STRING, name)
     port.put("Description", Type.STRING, name).put("Optional", Type.BOOL, False).put("SourceCount", Type.INT32, 0)

@@ -8,7 +8,7 @@ from uuid import UUID
 
 import pytest
 
-from canvas.kangaroo_samples import LENGTH, Kangaroo
+from canvas.kangaroo_samples import LENGTH, Kangaroo, solver_of
 from hookean_canvas.archive import Chunk
 from hookean_canvas.kangaroo import translate as kangaroo
 from hookean_canvas.kangaroo.held import DRAG
@@ -57,6 +57,7 @@ def test_another_damping_than_that_of_the_settings_becomes_drag(damping: float, 
     root, report = held(1000.0, damping, slid)
     assert report.complete, report.text()
     assert ("Drag" in named(root)) is script
+    assert solver_of(root) == "bouncy"
 
 
 @pytest.mark.parametrize("part", [0.5, 0.9, 0.99, 1.0])

@@ -9,7 +9,7 @@ from uuid import UUID
 import numpy as np
 import pytest
 
-from canvas.kangaroo_samples import Kangaroo
+from canvas.kangaroo_samples import Kangaroo, solver_of
 from canvas.test_import_run import SOFT, places, ran
 from canvas.test_stored import internalised
 from hookean_canvas.archive import Type
@@ -76,6 +76,7 @@ def test_a_bomb_becomes_an_impulse_at_a_time_and_its_system_is_translated() -> N
     assert (report.solvers, report.whole, report.stays) == (1, 1, [])
     names = [chunk.value("Name") for chunk in after.walk() if chunk.name == "Container"]
     assert {"Impulse", "Detonations"} <= set(names)
+    assert solver_of(after) == "verlet"  # a bomb needs physical time
 
 
 @pytest.mark.slow

@@ -14,7 +14,7 @@ import pytest
 
 from hookean import Scene, Simulation
 
-SOLVERS = ("verlet", "yoshida", "relaxation", "momentum", "newton", "multilevel")
+SOLVERS = ("verlet", "yoshida", "relaxation", "momentum", "bouncy", "newton", "multilevel")
 
 
 def net(solver: str, side: int = 6, **settings: Any) -> Scene:

@@ -226,7 +226,7 @@ def test_there_are_twelve_scenes_and_every_solver_takes_part() -> None:
     takes = {method: sum(not solver(method).refuse(system) for system in systems) for method in SOLVERS}
     print(takes)
     assert len(SCENES) == 12 and min(takes.values()) >= 2
-    assert all(takes[m] == 12 for m in ("auto", "relaxation", "momentum", "verlet", "newton"))
+    assert all(takes[m] == 12 for m in ("auto", "relaxation", "momentum", "bouncy", "verlet", "newton"))
 
 
 @pytest.mark.thinned

@@ -17,7 +17,7 @@ from .probe import digest, hashes, prepared
 from .scenes import FAMILIES, random_scene
 from .test_cache import probe
 
-SOLVERS = ("verlet", "yoshida", "relaxation", "momentum")
+SOLVERS = ("verlet", "yoshida", "relaxation", "momentum", "bouncy")
 
 
 @pytest.mark.soak

@@ -88,9 +88,9 @@ def _solver(solver: str, differs: str, **without: str) -> Swap:
 
 
 _BOUNCY = _solver(
-    "verlet",
-    "particles have mass and time is physical, so the motion is another; the shape at rest is the same; a mass of 1 "
-    "keeps 0.99 of its velocity in a step, or the damping if another is given",
+    "bouncy",
+    "goals are weighted as by Solver and 0.99 of the velocity is kept, or the damping if another is given; Kangaroo's "
+    "law is not published, so the motion may be another; the shape at rest is the same",
     damping="a step of 0.01 with a drag of 1 keeps 0.99 of the velocity",
 )
 

@@ -49,7 +49,7 @@ class Swapping:
         """Make the pieces, then say what found no place."""
         whole = self.whole
         self._in_metres()
-        self._in_wind()
+        self._in_time()
         if self.swap.pieces[0].bundle in FLOATING:
             self._parameter()
         else:
@@ -71,18 +71,17 @@ class Swapping:
         ]
         self.swap = replace(self.swap, pieces=tuple(pieces))
 
-    def _in_wind(self) -> None:
-        """A cloth that turns in the wind takes energy from it and may flutter for ever unless something damps it: the
-        iteration of Kangaroo's solver does not, motion in physical time with drag does."""
-        settings = [piece for piece in self.swap.pieces if piece.values.get("solver") == "momentum"]
-        if not settings or not any(self.whole.swapped("Wind", self.whole.systems.goals_of(self.part))):
-            return
-        pieces = [
-            replace(piece, values={**piece.values, "solver": "verlet"}) if piece in settings else piece
-            for piece in self.swap.pieces
-        ]
-        told = f"{self.swap.differs}; in wind it is played in physical time, with drag"
-        self.swap = replace(self.swap, pieces=tuple(pieces), differs=told)
+    def _in_time(self) -> None:
+        """Physical time for bombs, and for cloth in the wind, which may flutter for ever without drag."""
+        solvers = {piece.values.get("solver") for piece in self.swap.pieces}
+        goals = self.whole.systems.goals_of(self.part) if solvers & {"momentum", "bouncy"} else []
+        told = "in wind it is played in physical time, with drag" if any(self.whole.swapped("Wind", goals)) else ""
+        if not told and "bouncy" in solvers and any(self.whole.swapped("Impulse", goals)):
+            told = "with a bomb it is played in physical time"
+        if told:
+            time = {"solver": "verlet"}
+            pieces = (replace(p, values=p.values | time) if "solver" in p.values else p for p in self.swap.pieces)
+            self.swap = replace(self.swap, pieces=tuple(pieces), differs=f"{self.swap.differs}; {told}")
 
     def _has_data(self) -> bool:
         """Whether it is a solver of goals that give out data, or circles, not geometry that they got."""

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from hookean.compiled.marks import device
+from hookean.forces.runs import ABREAST, BITS, FEW, TOGETHER, beside, both, ends, meet, meet_few
 
 RADIUS, GROUP, START, END = 0, 1, 5, 6  # columns of parameters that are read here; the last two of capsules alone
 SEEN = 5  # of each element: the sphere about it, x y z and radius, and its group; of a capsule
@@ -23,11 +24,7 @@ FEWEST = 3  # cells along an axis, so that the two beside one are different
 PER_CELL = 2  # cells of an element that there is place for, at most
 SORTED = 4  # columns of elements in the order of cells: x, y, z and radius
 LOW, SIDE, CELLS = 0, 3, 6  # of a grid: its lowest cell, cells along each axis; where each cell starts, then rows
-ABREAST, FEW, BITS = 16, 4, 64  # elements that are compared at once, or one by one if runs are short; bits of a number
 LONG = 9  # elements in a run of three cells on average, from which on they are compared at once
-ONE, BRUIJN = np.uint64(1), np.uint64(0x03F79D71B4CB0A89)  # the upper six bits of this times a power of 2 are unique
-LOWEST = np.zeros(BITS, np.uint64)  # which bit is set, by these six
-LOWEST[[(int(BRUIJN) << bit & 0xFFFFFFFFFFFFFFFF) >> 58 for bit in range(BITS)]] = np.arange(BITS)
 
 
 @device
@@ -68,18 +65,6 @@ def cell_at(x: Any, y: Any, z: Any, scale: Any, grid: Any) -> Any:
     b = cell_of(y, scale) - grid[LOW + 1]
     c = cell_of(z, scale) - grid[LOW + 2]
     return a % grid[SIDE], b % grid[SIDE + 1], c % grid[SIDE + 2]
-
-
-@device
-def both(i: Any, j: Any) -> Any:
-    """A pair of rows as one number, the lower one first."""
-    return np.int64(min(i, j)) | np.int64(max(i, j)) << 32
-
-
-@device
-def ends(pair: Any) -> Any:
-    """The two rows of a pair; unsigned: no index counts from the end."""
-    return np.uint64(pair) & np.uint64(0xFFFFFFFF), np.uint64(pair) >> np.uint64(32)
 
 
 @device
@@ -197,67 +182,6 @@ def runs_about(c: Any, length: Any, columns: Any, first: Any, runs: Any) -> Any:
 
 
 @device
-def near_ones(xs, ys, zs, radii, begin, end, x, y, z, reach) -> Any:  # type: ignore[no-untyped-def]
-    """Which of the `ABREAST` elements from `begin` on, but none from `end` on, are within their radius and `reach` of a
-    point: a bit for each. All are compared at once, without a branch: as many as LLVM needs to make a vector loop."""
-    bits = 0
-    for k in range(ABREAST):
-        t = np.uint64(begin) + np.uint64(k)
-        dx, dy, dz, apart = xs[t] - x, ys[t] - y, zs[t] - z, radii[t] + reach
-        bits |= 1 << k if dx * dx + dy * dy + dz * dz < apart * apart else 0
-    return bits & ((1 << min(end - begin, ABREAST)) - 1)
-
-
-@device
-def near_few(xs, ys, zs, radii, begin, end, x, y, z, reach) -> Any:  # type: ignore[no-untyped-def]
-    """The same of `FEW` elements."""
-    bits = 0
-    for k in range(FEW):
-        t = np.uint64(begin) + np.uint64(k)
-        dx, dy, dz, apart = xs[t] - x, ys[t] - y, zs[t] - z, radii[t] + reach
-        bits |= 1 << k if dx * dx + dy * dy + dz * dz < apart * apart else 0
-    return bits & ((1 << min(end - begin, FEW)) - 1)
-
-
-@device
-def meet(xs, ys, zs, radii, number, x, y, z, reach, own, runs, several, at_once, found, count, begins) -> Any:  # type: ignore[no-untyped-def]
-    """List a row with all elements in some runs that are within their radius and `reach` of a point; how many pairs are
-    listed then, -1 if there is no place. Bits of several comparisons are read together, since the end of each reading
-    is a branch that no processor foresees."""
-    bits, full = np.uint64(0), 0
-    for n in range(several):
-        begin, end = runs[n, 0], runs[n, 1]
-        while begin < end:
-            if full == BITS:
-                count = write_bits(bits, begins, own, number, at_once, found, count)
-                bits, full = np.uint64(0), 0
-            if at_once == ABREAST:
-                near = near_ones(xs, ys, zs, radii, begin, end, x, y, z, reach)
-            else:
-                near = near_few(xs, ys, zs, radii, begin, end, x, y, z, reach)
-            bits |= np.uint64(near) << np.uint64(full)
-            begins[np.uint64(full)] = begin
-            full, begin = full + at_once, begin + at_once
-    return write_bits(bits, begins, own, number, at_once, found, count)
-
-
-@device
-def write_bits(bits, begins, own, number, at_once, found, count) -> Any:  # type: ignore[no-untyped-def]
-    """List an element with those of set bits, in groups of as many as were compared at once, each from one of `begins`;
-    how many pairs are listed then, -1 if there is no place."""
-    within = np.uint64(at_once - 1)
-    while bits:
-        lowest = LOWEST[(bits & (~bits + ONE)) * BRUIJN >> np.uint64(58)]
-        bits &= bits - ONE
-        if count < 0 or count >= found.shape[0]:
-            return -1
-        other = begins[lowest & ~within] + np.int64(lowest & within)
-        found[np.uint64(count)] = both(own, number[np.uint64(other)])
-        count += 1
-    return count
-
-
-@device
 def ignore(parameters: Any, e: Any, o: Any) -> Any:
     """Whether two elements ignore each other: those of one group, 0 being none, and capsules that share a particle."""
     if parameters[e, GROUP] == parameters[o, GROUP] and parameters[e, GROUP] != 0.0:
@@ -343,6 +267,7 @@ def find_pairs(spheres, parameters, start, order, beyond, picky, grid, found) ->
     xs, ys, zs, radii = sorted_in(grid, size)
     sort_cells(spheres, 1.0 / width, low, side, LARGE * mean, first, number, xs, ys, zs, radii)
     columns, runs, begins = np.empty(5, np.int64), np.empty((10, 2), np.int64), np.empty(BITS, np.int64)
+    few = np.empty((5, TOGETHER + 2 * FEW))
     at_once = ABREAST if 3 * size > LONG * cells else FEW
     first = first[1:]
     count, k = 0, -1
@@ -353,7 +278,13 @@ def find_pairs(spheres, parameters, start, order, beyond, picky, grid, found) ->
                 k += 1
                 if first[k] == first[k + 1]:
                     continue
-                several = runs_about(c, side[2], columns, first, runs)
+                several, own = runs_about(c, side[2], columns, first, runs), first[k + 1] - first[k]
+                if 0 <= count <= found.shape[0] - TOGETHER * own and not picky:
+                    total = beside(runs, several, xs, ys, zs, radii, number, few)
+                    if total <= TOGETHER:
+                        for s in range(own):
+                            count = meet_few(few, s, total, beyond, found, count)
+                        continue
                 for s in range(first[k], first[k + 1]):
                     t, before, runs[0, 0] = np.uint64(s), count, s + 1  # in its own cell with the later ones
                     x, y, z, reach = xs[t], ys[t], zs[t], radii[t] + beyond

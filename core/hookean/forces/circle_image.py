@@ -12,10 +12,10 @@ from hookean.compiled.dispatch import keep, rows
 from hookean.compiled.marks import device
 from hookean.forces import groups
 from hookean.forces.base import Block, Floats, Force, Ints, Places
-from hookean.forces.cells import ends
 from hookean.forces.collide import Crowd, crowd, overlapping
 from hookean.forces.crowd_rows import NEAREST, SKIN, STIFFNESS, end_of_crowd
 from hookean.forces.neighbours import order_in, pairs_listed, tables
+from hookean.forces.runs import ends
 from hookean.forces.strays import listed, some_pairs
 from hookean.values.columns import IndexRows, Labels, Points, Table, fault
 from hookean.values.fields import Field, Maybe

@@ -11,7 +11,7 @@ from hookean.compiled import dispatch
 from hookean.compiled.marks import device
 from hookean.forces.base import Block, Floats, Force, Ints, Places, lengths
 from hookean.forces.capsules import gap, push_capsules
-from hookean.forces.cells import GROUP, RADIUS, ends
+from hookean.forces.cells import GROUP, RADIUS
 from hookean.forces.collide_friction import (
     SLOT,
     SLOTS,
@@ -21,6 +21,7 @@ from hookean.forces.collide_friction import (
     rough_collide_note,
 )
 from hookean.forces.crowd_rows import NEAREST, ROOM, SKIN, STIFFNESS, end_of_crowd
+from hookean.forces.list_range import SKIN_PART
 from hookean.forces.neighbours import (
     AS_GIVEN,
     HERE,
@@ -34,12 +35,12 @@ from hookean.forces.neighbours import (
     served,
     tables,
 )
+from hookean.forces.runs import ends
 from hookean.forces.springs import Springs
 from hookean.forces.strays import listed, serves, some_pairs
 from hookean.values.columns import IndexRows, Labels, Points, Positives
 from hookean.values.fields import Field, Maybe
 
-SKIN_PART = 0.15  # of the mean radius: how far beyond their reach neighbours are listed
 SEVERAL = 128  # pairs at a time: what is between stays in the nearest cache
 # packed, a row of parameters for each room: where its elements start and how many they are, k, skin, address, and the
 # first particle where rows are consecutive particles, else -1

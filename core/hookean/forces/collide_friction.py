@@ -8,9 +8,10 @@ import numpy as np
 
 from hookean.compiled.marks import device
 from hookean.forces.base import Block, Floats
-from hookean.forces.cells import RADIUS, ends
+from hookean.forces.cells import RADIUS
 from hookean.forces.crowd_rows import NEAREST, ROOM, SKIN, STIFFNESS, end_of_crowd
 from hookean.forces.neighbours import order_in, pairs_listed, tables
+from hookean.forces.runs import ends
 from hookean.forces.strays import listed, some_pairs
 
 RATIO, FRICTION, DASHPOT = 5, 6, 7  # columns of the parameters, after those of `collide`

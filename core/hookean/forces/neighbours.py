@@ -7,8 +7,8 @@ in common, or has another size. Two that are within a margin of their reach then
 triangle inequality, wherever the places are: the places of spheres that keep moving are ahead of them, where they are
 expected at half of the time of the list, which so serves up to twice as long (`course`). Pairs are listed by their
 first row, then by their second, and those that are too far away count nothing, so that sums do not depend on when the
-list was made, or how far it ranges. The range follows the motion: a list that lasts long has fewer pairs, one that
-lasts briefly more.
+list was made, or how far it ranges. The range follows the motion (`list_range`): a list that lasts long has fewer
+pairs, one that lasts briefly more.
 
 Rows are elements in the order in which they are given, if neighbours are then near in memory; else layer by layer from
 where they are at the start (`in_layers`). Source: Verlet, "Computer experiments on classical fluids", 1967 (the list).
@@ -22,7 +22,9 @@ import numpy as np
 
 from hookean.compiled.dispatch import rows
 from hookean.compiled.marks import device
-from hookean.forces.cells import GROUP, RADIUS, SEEN, SEEN_CAPSULE, ends, find_pairs, grid_words
+from hookean.forces.cells import GROUP, RADIUS, SEEN, SEEN_CAPSULE, find_pairs, grid_words
+from hookean.forces.list_range import FIRST, LEAST, MOST, ROOM, changed, for_two, much
+from hookean.forces.runs import ends
 
 # the head of a room: elements and pairs it has place for; range beyond the reach, elements listed, particles of an
 # element; pairs listed, how often the list was used, whether rows are elements as given; uses that places are ahead;
@@ -36,11 +38,9 @@ BEGAN = 3  # of each sphere: where it was as the list was made
 PER_ELEMENT = 24  # pairs of an element that there is place for, on average
 ALONE = 32  # as many elements as this to one that may join a list again
 LOCAL = 2.0  # how much longer than layer by layer the way through elements as given may be
-LEAST, FIRST, MOST = 1.25, 2.0, 8.0  # the range of a list in skins
 MOST_OF = 4.0  # times the mean square of speeds: more than those of all but a few, in the spread of a gas
-BALANCE = 45.0  # range in skins times uses of a list at which making it costs as much as the pairs it has too many
 ONE = np.uint64(1)
-STEP = 1.5  # by which the range changes
+BARELY = 2.2  # range by the way from a place: a tenth more than is needed, else too many leave a list
 # of the way that a list allows: how far spheres are from their places as it is made, at most and at least
 MOST_AHEAD, LEAST_AHEAD = 0.9, 1e-3
 
@@ -396,7 +396,7 @@ def served(room: Any, count: Any, skin: Any, margin: Any) -> Any:
     head = rows(room, 1.0, HEAD)
     head[0, USED] += 1.0
     beyond, left = head[0, RANGE], 0.5 * (head[0, RANGE] - margin)
-    wide = beyond > LEAST * skin and head[0, USED] * beyond > STEP * BALANCE * skin
+    wide = beyond > LEAST * skin and much(beyond, skin, head[0, USED], head[0, FOUND] / max(count, 1)) > ROOM
     return -1.0 if head[0, COUNT] != count or left < 0.0 or wide else left * left
 
 
@@ -404,16 +404,15 @@ def served(room: Any, count: Any, skin: Any, margin: Any) -> Any:
 def renew(here: Any, parameters: Any, start: Any, order: Any, room: Any, skin: Any) -> Any:
     """Make the list again with the range that suits how long it was of use; whether there is place for it."""
     head = rows(room, 1.0, HEAD)
-    beyond, uses = head[0, RANGE], head[0, USED]
+    beyond, uses, each = head[0, RANGE], head[0, USED], head[0, FOUND] / max(here.shape[0], 1)
     if head[0, COUNT] < 0.0:
         beyond = FIRST * skin
-    elif uses * beyond > STEP * BALANCE * skin:
-        beyond /= STEP
-    elif uses * beyond * STEP < BALANCE * skin:
-        beyond *= STEP
+    else:
+        beyond = changed(beyond, skin, uses, each)
     ahead, fastest, usual = course(here, room)
-    if usual - min(ahead * usual, 0.5 * MOST_AHEAD * (MOST - 1.0) * skin) > 0.5 * MOST * skin:
-        beyond = 0.0  # no list serves twice: the one that is made in the least time
+    twice = BARELY * (usual - min(ahead * usual, 0.5 * MOST_AHEAD * (MOST - 1.0) * skin))
+    if twice > beyond:
+        beyond = for_two(twice, beyond, skin, each)
     beyond, least = min(max(beyond, LEAST * skin), MOST * skin), LEAST * skin
     if list_pairs(here, parameters, start, order, room, beyond, limited(ahead, fastest, beyond - skin), fastest):
         made = True

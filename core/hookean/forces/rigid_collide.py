@@ -12,7 +12,6 @@ from hookean.compiled.marks import device
 from hookean.errors import InputError
 from hookean.forces import groups
 from hookean.forces.base import Block, Floats, Force, Ints, Places
-from hookean.forces.cells import ends
 from hookean.forces.collide import Crowd
 from hookean.forces.contained import find_inside
 from hookean.forces.convex import (
@@ -51,6 +50,7 @@ from hookean.forces.rigid_places import (
     crowd_sizes,
     gather,
 )
+from hookean.forces.runs import ends
 from hookean.forces.strays import listed, some_pairs
 from hookean.values.columns import IndexRows, Labels, NonNegatives, Points
 from hookean.values.fields import Field, Maybe

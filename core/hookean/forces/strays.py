@@ -14,17 +14,12 @@ import numpy as np
 from hookean.compiled.dispatch import rows
 from hookean.compiled.marks import device
 from hookean.forces.cells import (
-    BITS,
-    FEW,
     RADIUS,
     SIDE,
-    both,
     cell_at,
     cells_of,
     chains_of,
-    ends,
     ignore,
-    meet,
     runs_at,
     sorted_in,
 )
@@ -47,6 +42,7 @@ from hookean.forces.neighbours import (
     served,
     sort_pairs,
 )
+from hookean.forces.runs import BITS, FEW, both, ends, meet
 
 ABOUT = 64  # pairs of a stray that there is place for, on average
 NOW = 2  # mark of a stray whose pairs are being looked for; of earlier ones, 1
