@@ -12,6 +12,7 @@ import numpy as np
 
 from hookean.analysis.envelope import Envelope, Extremes, first_largest
 from hookean.analysis.load_cases import CaseResult, LoadCases, load_cases
+from hookean.files import limits as limit_file
 from hookean.files import tables
 from hookean.forces import KINDS
 from hookean.pictures.picture import picture
@@ -66,7 +67,7 @@ def reported(
     """The report of a scene.
 
     With load cases the form is found and frozen, and all cases and combinations are solved; else the scene is relaxed.
-    `limits`, as `tables.read_limits` gives them, are checked in each case. The same scene gives the same text. `cases`
+    `limits`, as `limits.read_limits` gives them, are checked in each case. The same scene gives the same text. `cases`
     of this scene that are solved already are not solved again; else `processes` solve them side by side.
     Raises InputError where the scene cannot be relaxed or frozen, or a limit names what it does not have.
     """
@@ -292,7 +293,7 @@ def _exceeded_in(case: CaseResult, cases: LoadCases, limits: Mapping[str, Any]) 
 
 
 def _exceeded(limits: Mapping[str, Any], system: System, result: Result) -> list[str]:
-    return tables.exceeded(limits, tables.sections(system, result), system, result, source="the scene")
+    return limit_file.exceeded(limits, tables.sections(system, result), system, result, source="the scene")
 
 
 def _checks(exceeded: Sequence[str]) -> Iterator[str]:
