@@ -15,6 +15,7 @@ from hookean.errors import InputError
 from hookean.forces import Block, Force, base, elastic
 from hookean.forces.base import Places
 from hookean.forces.membrane import Membrane
+from hookean.forces.self_weight import SelfWeight
 from hookean.forces.sliding_cable import SlidingCable, taut
 from hookean.forces.soapfilm import SoapFilm
 from hookean.forces.springs import Springs
@@ -35,6 +36,7 @@ Floats = NDArray[np.float64]
 
 STEPS = 12  # of Newton's method that take a form to rounding
 SETTLED = 1e-9  # part of the forces and of the size that counts as none
+HEAVY = 0.03  # part of a weight by which that of the form may differ, as stretched cloth does
 ELASTIC = ("anchor_spring", "bend", "gas", "hinge", "membrane", "beam", "power_law", "shell", "springs", "volume")
 """Internal forces and supports that stay as they are, besides those that `FREEZERS` turns into others."""
 
@@ -142,6 +144,7 @@ def freeze(scene: Scene) -> Frozen:
             elif group.cls.role == "internal" and part.number not in slides and group.cls.kind_name not in ELASTIC:
                 name = force.name or force.kind_name
                 notes.append(f"/forces/{part.number}: {name} is not elastic and acts on the frozen model as before")
+    notes += _heavy(system, state)
     frozen = scene.replaced(forces=tuple(forces))
     turned = system.slots.quaternions(state.x)
     found = state.x[: system.slots.count].copy()
@@ -152,6 +155,20 @@ def freeze(scene: Scene) -> Frozen:
     if not np.array_equal(other.x, system.x):
         raise InputError("/forces", "the frozen model has other particles than the form; name particles by index")
     return model
+
+
+def _heavy(system: System, state: State) -> list[str]:
+    """Notes on weights that count the start shape, where the form is longer or larger or smaller."""
+    notes, unit = list[str](), system.scene.units.force
+    for number, force in enumerate(system.scene.forces):
+        if not isinstance(force, SelfWeight) or (there := force.weight_at(system.places, state.x)) is None:
+            continue
+        start = force.weight_at(system.places, system.x) or 0.0
+        if abs(start - there) > HEAVY * abs(there):
+            name, other = force.name or force.kind_name, "line_weight" if force.element_arity == 2 else "area_weight"
+            said = f"is the weight of the start shape, {start:.4g} {unit}"
+            notes.append(f"/forces/{number}: {name} {said}; the form weighs {there:.4g} {unit}, which {other} gives")
+    return notes
 
 
 def _clothed(system: System, state: State, stages: Stages) -> tuple[System, State, list[str]]:
