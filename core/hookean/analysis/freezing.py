@@ -19,6 +19,7 @@ from hookean.forces.self_weight import SelfWeight
 from hookean.forces.sliding_cable import SlidingCable, taut
 from hookean.forces.soapfilm import SoapFilm
 from hookean.forces.springs import Springs
+from hookean.linear.film_tangent import patterned
 from hookean.linear.pattern import Pattern
 from hookean.running.result import Result, Status, gather
 from hookean.running.run import relax_state
@@ -213,24 +214,26 @@ def _form(scene: Scene, stages: Stages) -> tuple[System, State, Result]:
         found = balance(system, state)
         said = "The form is the start shape."
         return system, state, gather(system, state, found, None, Status.CONVERGED, said, "none", moving=False)
-    result = relax_state(system, state, solver(scene.settings.solver))
+    method = solver(scene.settings.solver)
+    result = relax_state(system, state, method)
     if not result.converged:
         raise InputError("model", f"no form was found: {result.message}")
-    sharpen(system, state)
+    sharpen(system, state, method.pattern)
     found = balance(system, state)
     rest = assess(system, state, found)
     form = gather(system, state, found, rest, result.status, result.message, result.solver, moving=False)
     return system, state, form
 
 
-def sharpen(system: System, state: State) -> None:
-    """Take a shape at rest to rounding by Newton steps, as long as they bring it nearer."""
+def sharpen(system: System, state: State, known: Pattern | None = None) -> None:
+    """Take a shape at rest to rounding by Newton steps, as long as they bring it nearer; `known` is the pattern of its
+    tangent, if there is one."""
     if system.no_tangent() or system.contacts:
         return
     rest = AtRest.checked(system, state, True, "")
     unknowns = Unknowns.of(system, state, rest.free)
     plain = unknowns.sparse and system.films is None and not len(system.slots)
-    pattern = Pattern(system, rest.free) if plain else None  # which is worked out once for all steps
+    pattern = patterned(system, state, rest.free, known) if plain else None  # worked out once for all steps
     left = system.evaluate(state)[0] * rest.free
     for _ in range(STEPS):
         if pattern is not None:
