@@ -40,6 +40,9 @@ class Buckling:
     loads: tuple[str, ...] = ()
     units: Units = field(default_factory=Units)
 
+    def __repr__(self) -> str:
+        return "\n".join(["Buckling", *(f"  {line}" for line in self.summary())])
+
     def summary(self) -> list[str]:
         """A line for each factor."""
         if not len(self.factors):

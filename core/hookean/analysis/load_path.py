@@ -62,6 +62,9 @@ class LoadPath:
         """The load factor of the first limit point or bifurcation [-]; None where there was none."""
         return self.critical_points[0].factor if self.critical_points else None
 
+    def __repr__(self) -> str:
+        return "\n".join(["Load path", *(f"  {line}" for line in self.summary())])
+
     def summary(self) -> list[str]:
         """A few lines: points, largest factor, critical points, why it ended."""
         unit, far = self.units.length, np.linalg.norm(self.displacements, axis=2).max(initial=0.0)

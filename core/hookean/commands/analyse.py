@@ -33,6 +33,10 @@ class Options:
         Path | None, typer.Option("--recipe", "-r", help="Recipe (TOML, JSON); default: layer names define the model")
     ] = None
     frequencies: Annotated[int, typer.Option(help="How many natural frequencies", min=0)] = 0
+    weight_masses: Annotated[
+        bool,
+        typer.Option("--weight-masses", help="Masses from the self_weight of the model instead of its particles"),
+    ] = False
     buckling: Annotated[int, typer.Option(help="How many linear buckling factors", min=0)] = 0
     load_path: Annotated[int, typer.Option(help="Follow the load-displacement path by so many steps", min=0)] = 0
     mechanisms: Annotated[bool, typer.Option("--mechanisms", help="Count mechanisms and states of self-stress")] = False
@@ -91,7 +95,8 @@ def _chosen(options: Options) -> dict[str, Callable[[Scene], Any]]:
     plain = not (options.frequencies or options.buckling or options.load_path or options.mechanisms)
     chosen: dict[str, Callable[[Scene], Any]] = {}
     if options.frequencies or plain:
-        chosen["frequencies"] = lambda scene: hookean.frequencies(scene, options.frequencies or 6)
+        masses = "self_weight" if options.weight_masses else None
+        chosen["frequencies"] = lambda scene: hookean.frequencies(scene, options.frequencies or 6, masses=masses)
     if options.buckling:
         chosen["buckling"] = lambda scene: hookean.buckling(scene, options.buckling, loads=loads)
     if options.load_path:

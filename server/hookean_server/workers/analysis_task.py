@@ -32,6 +32,15 @@ class Modes(Model):
     count: int = Field(default=6, ge=1, le=200, description="How many modes")
 
 
+class Frequencies(Modes):
+    """How many modes, of which masses."""
+
+    masses: float | tuple[float, ...] | Literal["self_weight"] | None = Field(
+        default=None,
+        description="Mass of all or of each particle [mass], or that of its self_weight; null: those of the scene",
+    )
+
+
 class Buckling(Modes):
     """How many factors, and which loads grow."""
 
@@ -90,7 +99,9 @@ class Analysis:
 
 
 ANALYSES: dict[str, Analysis] = {
-    "frequencies": Analysis(hookean.frequencies, Modes, ("frequencies", "modes", "effective_masses", "units")),
+    "frequencies": Analysis(
+        hookean.frequencies, Frequencies, ("frequencies", "modes", "effective_masses", "units", "notes")
+    ),
     "buckling": Analysis(hookean.buckling, Buckling, ("factors", "modes", "particles", "loads", "units")),
     "load-path": Analysis(hookean.load_path, LoadPath, ("factors", "particles", "stable", "critical_points", "units")),
     "mechanisms": Analysis(
