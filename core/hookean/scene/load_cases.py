@@ -15,6 +15,7 @@ from hookean.values.fields import Field, Maybe, Named
 if TYPE_CHECKING:
     from hookean.scene.scene import Scene
 
+IDLE = "loads that do not act"  # the name of those of other cases in the scene of one
 PRESTRESS, PERMANENT = "prestress", "permanent"
 """Names in combinations: what the form is stressed by, and the loads that are in no case."""
 LINES = ("springs", "constant_tension")

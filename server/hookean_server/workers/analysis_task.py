@@ -45,12 +45,14 @@ class Buckling(Modes):
     """How many factors, and which loads grow."""
 
     loads: tuple[str, ...] | None = Field(default=None, description="Names of the loads that grow; null: all")
+    case: str | None = Field(default=None, description="Load case or combination whose loads these are; null: none")
 
 
 class LoadPath(Model):
     """Which loads change, and how far."""
 
     loads: tuple[str, ...] | None = Field(default=None, description="Names of the loads that change; null: all")
+    case: str | None = Field(default=None, description="Load case or combination whose loads these are; null: none")
     steps: int = Field(default=50, ge=1, le=1000, description="Points of the path at most")
     increment: float = Field(default=0.1, description="Load factor of the first step [-]")
     largest_factor: float | None = Field(default=None, description="End at this load factor [-]; null: after all steps")
