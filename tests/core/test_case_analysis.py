@@ -67,6 +67,12 @@ def test_loads_of_cases_are_not_taken_for_none() -> None:
         hookean.load_path(column(), case="snow")
 
 
+def test_a_result_names_the_loads_of_cases_that_it_is_without() -> None:
+    """And the result of a case does not name those of others."""
+    assert repr(hookean.relax(column())).endswith("without P, Q, of load cases")
+    assert "without" not in repr(hookean.load_cases(column(), ["P"]).cases["P"].result)
+
+
 def test_the_load_path_of_a_case_goes_through_its_equilibrium() -> None:
     """A net that is formed, frozen and loaded: where the factor is 1, it is where the case has it."""
     side = range(5)

@@ -117,6 +117,12 @@ def case_loads(scene: Scene) -> frozenset[int]:
     return frozenset(i for name in names for i in named(scene, name))
 
 
+def asleep(scene: Scene) -> list[str]:
+    """The names of the loads that are in load cases, which do not act by themselves, each once."""
+    found = (scene.forces[i] for i in sorted(case_loads(scene)))
+    return list(dict.fromkeys(force.name or force.kind_name for force in found if force.name != IDLE))
+
+
 def check(scene: Scene) -> None:
     """Raise the fault of a load case, combination or stage that names what is not there."""
     loads = [f.name or f.kind_name for f in scene.forces if KINDS[f.kind_name].role == "load"]
