@@ -114,6 +114,7 @@ def _scene(scene: Scene, form: Result) -> Iterator[str]:
 def _form(scene: Scene, form: Result, pictures: bool) -> Iterator[str]:
     yield "<h2>Form</h2>"
     yield f"<p>{escape(form.message)} Stability: {form.stability}.</p>"
+    yield from _warned(form)
     if pictures:
         yield _picture(form, "Form and forces in it")
     yield from _loads(form, "Loads that act on the form")
@@ -121,6 +122,10 @@ def _form(scene: Scene, form: Result, pictures: bool) -> Iterator[str]:
     yield _table(("force", "column", "smallest", "largest", "unit"), _ranges(form))
     if not (scene.load_cases or scene.combinations):
         yield from _missing(scene, form)
+
+
+def _warned(result: Result) -> Iterator[str]:
+    yield from (f"<p>Warning: {escape(sentence)}</p>" for sentence in result.report.warnings)
 
 
 def _ranges(result: Result) -> Iterator[tuple[Any, ...]]:
@@ -276,6 +281,7 @@ def _case(case: CaseResult, exceeded: Sequence[str] | None, pictures: bool) -> I
     yield f"<h2>Case {escape(case.name)}</h2>"
     given = " + ".join(f"{factor:g} x {name}" for name, factor in case.factors.items())
     yield f"<p>{escape(given)}. {escape(case.result.message)} Stability: {case.result.stability}.</p>"
+    yield from _warned(case.result)
     if pictures:
         yield _picture(case.result, f"Shape and forces under {case.name}")
     yield from _loads(case.result, "Loads")

@@ -98,7 +98,7 @@ class SelfWeight(Force):
             index = places.elements(self)
             share = self.total / max(len(index), 1)  # of all points, also of those that met no particle
             return Block.of(index, vector=np.broadcast_to(share * down, (len(index), 3)))
-        index, each = self._each(places, places.x)
+        index, each = self.shares(places, places.x)
         weight = np.bincount(index.ravel(), np.repeat(each, index.shape[1]), len(places.x))
         particles = np.unique(index)
         return Block.of(particles[:, None], vector=weight[particles, None] * down)
@@ -107,10 +107,10 @@ class SelfWeight(Force):
         """Weight [force] of a material, or per length, if its lines or faces had started at `x`; None of a total."""
         if self.total is not None:
             return None
-        index, each = self._each(places, x)
+        index, each = self.shares(places, x)
         return index.shape[1] * float(each.sum())
 
-    def _each(self, places: Places, x: Floats) -> tuple[Ints, Floats]:
+    def shares(self, places: Places, x: Floats) -> tuple[Ints, Floats]:
         """Particles (m, 2) of lines or (m, 3) of triangles, and the weight (m,) on each of these, as long or large as
         they are at `x`."""
         if self._along:

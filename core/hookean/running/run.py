@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from hookean.errors import InputError
+from hookean.running.between import bent_between
 from hookean.running.result import Result, Status, gather
 from hookean.running.watch import Watch
 from hookean.scene.scene import Scene
@@ -94,7 +95,10 @@ def relax_state(
     message = watch.sentence(system, status)
     if status is Status.CONVERGED and method.remark:
         message = f"{message} {method.remark}"
-    return gather(system, state, watch.found, watch.rest, status, message, name, moving=method.physical)
+    result = gather(system, state, watch.found, watch.rest, status, message, name, moving=method.physical)
+    if status is Status.CONVERGED and not method.physical:
+        result.report.warnings[:] = dict.fromkeys([*result.report.warnings, *bent_between(system, result)])
+    return result
 
 
 def _restore(state: State, good: State, *, memory: bool) -> None:
