@@ -559,6 +559,7 @@ def test_a_plate_has_its_moment_and_its_stress_in_the_middle() -> None:
                 {"kind": "area_weight", "mesh": "plate", "weight": load, "per": "start"},
             ],
             "anchors": [{"points": x[rings[-1]], "axes": "z"}, {"points": x, "axes": "xy"}],
+            "settings": {"tolerance": 1e-10},
         }
     )
     found = relax(scene).force("shell")

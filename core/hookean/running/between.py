@@ -24,8 +24,7 @@ def bent_between(system: System, result: Result) -> list[str]:
 
     Loads along lines act on particles, half on each end, so a beam has no moment of its own between them; a load W
     across one of length l would add W l / 8 there (simply supported, or from the line between both end moments)."""
-    beams = any(isinstance(force, Beam) for force in system.scene.forces)
-    pairs, loads = _along(system, result) if beams else (np.zeros((0, 2), np.int64), np.zeros((0, 3)))
+    pairs, loads = _along(system, result)
     if not len(pairs):
         return []
     said = []

@@ -9,7 +9,6 @@ from dataclasses import replace
 import numpy as np
 
 from hookean.errors import InputError
-from hookean.running.between import bent_between
 from hookean.running.result import Result, Status, gather
 from hookean.running.watch import Watch
 from hookean.scene.scene import Scene
@@ -96,7 +95,10 @@ def relax_state(
     if status is Status.CONVERGED and method.remark:
         message = f"{message} {method.remark}"
     result = gather(system, state, watch.found, watch.rest, status, message, name, moving=method.physical)
-    if status is Status.CONVERGED and not method.physical:
+    beams = any(force.kind_name == "beam" for force in system.scene.forces)
+    if status is Status.CONVERGED and not method.physical and beams:
+        from hookean.running.between import bent_between  # other scenes need not load beams
+
         result.report.warnings[:] = dict.fromkeys([*result.report.warnings, *bent_between(system, result)])
     return result
 
