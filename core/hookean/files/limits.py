@@ -61,7 +61,7 @@ NEEDED = {
     "max_strain": "no element has a strain; give max_strain for springs with a rest length",
     "max_reaction": "no anchor, support or floor has this name; give max_reaction for one of these",
     "max_utilisation": "no element has a known strength; give materials with strength, or strength, to the forces",
-    "max_stress": "no element has a known section; give material and section to springs or beams",
+    "max_stress": "no element has a known section; give material and section to springs or beams, thickness to shells",
     "max_moment": "no element is a beam; give max_moment for beams",
 }
 """Limits of what not every element has, and what to do where none has it."""

@@ -108,7 +108,7 @@ class SelfWeight(Force):
         if self.total is not None:
             return None
         index, each = self.shares(places, x)
-        return index.shape[1] * float(each.sum())
+        return float(index.shape[1] * each.sum())
 
     def shares(self, places: Places, x: Floats) -> tuple[Ints, Floats]:
         """Particles (m, 2) of lines or (m, 3) of triangles, and the weight (m,) on each of these, as long or large as
