@@ -29,7 +29,7 @@ def test_every_force_is_exported():
 
 def test_the_recipe_and_the_limits_of_the_docs_are_read():
     """The TOML blocks of docs/rhino-files.md parse as a recipe and as limits."""
-    from hookean.files.tables import read_limits
+    from hookean.files.limits import read_limits
     from hookean.scene.text import parse_tables
 
     recipe, limits = re.findall(r"```toml\n(.*?)```", (ROOT / "docs" / "rhino-files.md").read_text("utf-8"), re.S)

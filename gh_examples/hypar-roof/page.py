@@ -8,10 +8,11 @@ from multiprocessing import get_context
 from pathlib import Path
 
 import hookean
+from hookean.files.limits import read_limits
 from hookean.files.relax_file import read_scene
 from hookean.files.report import report
 from hookean.files.sheets import write_sheets
-from hookean.files.tables import csv_text, read_limits
+from hookean.files.tables import csv_text
 from hookean.scene.scene import Scene
 from hookean.workshop.patterns import strains
 

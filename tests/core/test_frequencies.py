@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 import scipy.optimize
@@ -161,3 +163,50 @@ def test_an_unstable_shape_has_a_negative_frequency() -> None:
     spec = {"particles": [[0, 0, 0], [0, 0, 1.0]], "forces": [bar, push], "anchors": [{"particles": [0]}]}
     found = hookean.frequencies(Scene.read({**spec, "settings": settings}), count=1)
     np.testing.assert_allclose(found.angular_frequencies, [-np.sqrt(10.0)], rtol=1e-9)
+
+
+def ties(n: int = 8) -> dict[str, Any]:
+    """A pinned beam of steel, 4 m long, with its weight, in kN and m, held in its plane."""
+    made = {"material": "steel", "section": "bar"}
+    return {
+        "units": {"force": "kN"},
+        "particles": np.linspace([0, 0, 0], [4.0, 0, 0], n + 1),
+        "materials": {"steel": {"E": 210e6, "G": 81e6, "density": 7.85}},
+        "sections": {"bar": {"shape": "rectangle", "width": 0.05, "height": 0.1}},
+        "forces": [
+            {"kind": "beam", "particles": chain(n), **made},
+            {"kind": "self_weight", "particles": chain(n), **made, "factor": 1.0},
+        ],
+        "anchors": [{"particles": [0, n], "axes": "xyz", "rotations": "x"},
+                    {"particles": list(range(1, n)), "axes": "y", "rotations": "xz"}],
+    }  # fmt: skip
+
+
+def test_masses_of_the_self_weight_give_a_beam_its_frequency() -> None:
+    """f = pi / 2 sqrt(EI / (m L^4)) (Clough and Penzien, 1993, section 18-2), m = 7.85 t/m3 x A: masses on particles
+    along a sine have its energy of motion exactly; they turn as rods of their length, which adds (pi / n)^2 / 12 of it.
+    The cubic bends as a sine up to (pi / n)^4 / 720 (Taylor's theorem), and the beam's own sag w stiffens it by
+    (w / r)^2 at most, r the radius of gyration. Without masses a note reports that they are 1."""
+    n, bending, mass = 8, 210e6 * 0.05 * 0.1**3 / 12.0, 7.85 * 0.005
+    found = hookean.frequencies(Scene.read(ties(n)), 1, masses="self_weight")
+    exact = 0.5 * np.pi * np.sqrt(bending / (mass * 4.0**4) / (1.0 + (np.pi / n) ** 2 / 12.0))
+    sag = 5.0 * mass * 9.80665 * 4.0**4 / (384.0 * bending)
+    assert found.frequencies[0] == pytest.approx(exact, rel=(np.pi / n) ** 4 / 720.0 + (sag / (0.1 / 12.0**0.5)) ** 2)
+    assert found.notes == () and found.mass[2] == pytest.approx(mass * 4.0 * (n - 1) / n, rel=1e-12)
+    light = hookean.frequencies(Scene.read(ties(n)), 1)
+    assert light.summary()[-1].startswith("every particle has the mass 1, the default")
+    assert "mode 1" in repr(light) and "array" not in repr(light)
+
+
+def test_masses_of_the_self_weight_are_there_or_missed() -> None:
+    """A factor on the weight multiplies masses; who moves without one is named, and so is a word that means nothing."""
+    heavy, bare, light = ties(), ties(), ties()
+    heavy["forces"][1]["factor"] = 4.0
+    once, twice = (hookean.frequencies(Scene.read(of), 1, masses="self_weight") for of in (ties(), heavy))
+    assert twice.mass[2] == pytest.approx(4.0 * once.mass[2], rel=1e-12)
+    bare["forces"] = bare["forces"][:1]
+    with pytest.raises(hookean.InputError, match="masses: particle 0 moves and has no self_weight"):
+        hookean.frequencies(Scene.read({**bare, "anchors": [{"particles": [8], "rotations": "xyz"}]}), 1,
+                            masses="self_weight")  # fmt: skip
+    with pytest.raises(hookean.InputError, match=r"masses: 'weight' given; give numbers, or \"self_weight\""):
+        hookean.frequencies(Scene.read(light), 1, masses="weight")

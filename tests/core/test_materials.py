@@ -333,3 +333,37 @@ def test_a_beam_is_made_of_a_material_and_a_section() -> None:
     for given in ({}, {"E": 1.0}, {"material": "steel"}, {**own, "material": "steel", "section": "tube"}):
         with pytest.raises(InputError, match="give either E, G, A, Iy, Iz, J, or both material and section"):
             compile(Scene.read({**SCENE, "forces": [{"kind": "beam", "particles": [[0, 1]], **given}]}))
+
+
+@pytest.mark.parametrize(
+    ("units", "steel", "wood", "fields"),
+    [
+        ({}, (210e9, 7850.0), (11e9, 420.0), []),
+        ({"force": "kN"}, (210e6, 7.85), (11e6, 0.42), []),
+        ({"length": "mm", "force": "N"}, (210e3, 7.85e-9), (11e3, 4.2e-10), []),
+        ({"length": "in", "force": "kip"}, (30e3, 7.35e-7), (1.6e3, 4e-8), []),
+        ({"force": "kN"}, (210e9, 7.85), (11e6, 420.0), ["steel/E", "wood/density"]),
+        ({"length": "mm", "force": "N"}, (210e9, 7850.0), (11e3, 4.2e-10), ["steel/E", "steel/density"]),
+    ],
+)
+def test_a_material_in_other_units_is_doubted(
+    units: dict[str, str], steel: tuple[float, float], wood: tuple[float, float], fields: list[str]
+) -> None:
+    """Steel of 210 GPa and 7850 kg/m3 and wood of 11 GPa and 420 kg/m3, right in the units of the scene; or as they
+    would be in N, m and kg, which no material is there: stiffer than diamond, 1.2e12 N/m2, or heavier than osmium,
+    22.6 t/m3."""
+    made = {name: {"E": E, "density": of} for name, (E, of) in {"steel": steel, "wood": wood}.items()}
+    springs = {"kind": "springs", "particles": [[0, 1]]}
+    scene = Scene.read(
+        {"units": units, "particles": [[0, 0, 0], [1, 0, 0]], "materials": made, "forces": [springs],
+         "anchors": [{"particles": [0, 1]}]}
+    )  # fmt: skip
+    said = compile(scene).report.warnings
+    assert [sentence.removeprefix("/materials/").split(":")[0] for sentence in said] == fields
+
+
+def test_the_doubt_names_the_value_and_the_unit() -> None:
+    """7850 with kN, m and s is 7.85 million kg/m3, and belongs into tonnes."""
+    (said,) = Material(E=210e6, density=7850.0).doubts(Units(force="kN")).values()
+    assert said.startswith("7850 given, which is 7.85e+06 kg/m^3, more than any material has; give it per m^3 in units")
+    assert "units of 1000 kg" in said

@@ -187,3 +187,23 @@ def test_what_was_given_is_named_in_the_words_of_the_file(given: dict[str, Any],
 def test_an_empty_text_is_listed_as_one() -> None:
     """Where "" is one of the texts that are allowed, the sentence shows it."""
     assert 'allowed: "", x, y' in refused(scene(anchors=[{**ENDS, "rotations": "w"}]))
+
+
+@pytest.mark.slow
+def test_a_run_that_a_moment_keeps_from_rest_says_how_it_may_end() -> None:
+    """A cantilever whose end moment would roll it up to a circle leaves the plane, where the moment has no energy; held
+    in the plane it rolls up, as it does with Newton steps that keep an unstable shape."""
+    spec: dict[str, Any] = {
+        "particles": [[10.0 * i / 3, 0, 0] for i in range(4)],
+        "forces": [
+            {"kind": "beam", "particles": [[0, 1], [1, 2], [2, 3]], "E": 1e4, "G": 5e3, "A": 1, "Iy": 0.01, "Iz": 0.01}
+            | {"J": 0.02},
+            {"kind": "unary", "particles": [3], "vector": [0, 0, 0], "moment": [0, -2e1 * np.pi, 0]},
+        ],
+        "anchors": [{"particles": [0], "rotations": "xyz"}],
+    }
+    loose = relax(Scene.read(spec))
+    assert str(loose.status) == "stalled" and "A moment keeps its direction and has no energy" in loose.message
+    plane = [*spec["anchors"], {"particles": [1, 2, 3], "axes": "y", "rotations": "xz"}]
+    assert relax(Scene.read({**spec, "anchors": plane})).converged
+    assert relax(Scene.read({**spec, "settings": {"solver": "newton", "allow_unstable": True}})).converged

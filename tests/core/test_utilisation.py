@@ -9,6 +9,7 @@ import pytest
 
 import hookean
 from hookean import InputError, Scene, relax
+from hookean.files import limits as limit_file
 from hookean.files import tables
 from hookean.files.report import report
 from hookean.system.system import compile
@@ -243,14 +244,14 @@ def test_a_limit_on_utilisation_names_the_element_or_what_is_missing() -> None:
     parts, used = tables.sections(system, case), case.force("cable")["utilisation"].max().item()
 
     def exceeded(most: float) -> list[str]:
-        limits = tables.read_limits(f"[force.cable]\nmax_utilisation = {most!r}")
-        return tables.exceeded(limits, parts, system, case)
+        limits = limit_file.read_limits(f"[force.cable]\nmax_utilisation = {most!r}")
+        return limit_file.exceeded(limits, parts, system, case)
 
     assert exceeded(used * 1.001) == []
     said = f"force cable: max utilisation {used:.6g} at element 0 of cable exceeds the limit {used / 2:g}"
     assert exceeded(used / 2) == [said]
     with pytest.raises(InputError, match="no element has a known strength"):
-        tables.exceeded(tables.read_limits('[force."snow load"]\nmax_utilisation = 1.0'), parts, system, case)
+        limit_file.exceeded(limit_file.read_limits('[force."snow load"]\nmax_utilisation = 1.0'), parts, system, case)
 
 
 def test_stress_and_moment_have_limits() -> None:
@@ -271,7 +272,7 @@ def test_stress_and_moment_have_limits() -> None:
     parts = tables.sections(system, found)
 
     def said(text: str) -> list[str]:
-        return tables.exceeded(tables.read_limits(text), parts, system, found)
+        return limit_file.exceeded(limit_file.read_limits(text), parts, system, found)
 
     assert said("max_moment = 20.1\nmax_stress = 20100") == []
     assert said("max_moment = 19") == ["model: max moment 20 N m at element 0 of arm exceeds the limit 19 N m"]

@@ -17,6 +17,7 @@ import rhino3dm as _rhino3dm
 from hookean import Scene
 from hookean import relax as relax_scene
 from hookean.errors import InputError
+from hookean.files import limits as limit_file
 from hookean.files import tables
 from hookean.files.recipe.output import Palette
 from hookean.files.relax_file import FileResult, LimitsError, explain_file, relax_file, report_json
@@ -389,17 +390,17 @@ LIMITS = {
 
 @pytest.mark.parametrize("text", LIMITS)
 def test_limits_are_checked_where_they_stand(cable: Path, text: str) -> None:
-    found = relax_file(cable, None, CABLE, limits=tables.read_limits(text))
+    found = relax_file(cable, None, CABLE, limits=limit_file.read_limits(text))
     assert len(found.exceeded) == 1 and found.exceeded[0].startswith(LIMITS[text])
 
 
 def test_limits_that_hold_say_nothing_and_units_count(cable: Path) -> None:
     wide = "max_force = 1e6\nmin_force = -1\nmax_strain = 1\nmax_displacement = 10\nmax_reaction = 1e6\n"
-    assert relax_file(cable, None, CABLE, limits=tables.read_limits(wide)).exceeded == []
+    assert relax_file(cable, None, CABLE, limits=limit_file.read_limits(wide)).exceeded == []
     strongest = float(relax_file(cable, None, CABLE).result.force("cable")["force"].max())
     for factor, count in ((0.999, 1), (1.001, 0)):
         limit = f'max_force = {strongest / 1000 * factor}\nunits = {{force = "kN"}}\n'
-        found = relax_file(cable, None, CABLE, limits=tables.read_limits(limit)).exceeded
+        found = relax_file(cable, None, CABLE, limits=limit_file.read_limits(limit)).exceeded
         assert len(found) == count and all("kN" in sentence for sentence in found)
 
 
@@ -419,7 +420,7 @@ def test_limits_that_hold_say_nothing_and_units_count(cable: Path) -> None:
 )
 def test_limits_that_could_never_be_exceeded_are_refused(cable: Path, text: str, said: str) -> None:
     with pytest.raises(InputError, match=said):
-        relax_file(cable, None, CABLE, limits=tables.read_limits(text))
+        relax_file(cable, None, CABLE, limits=limit_file.read_limits(text))
 
 
 SCENE = {
@@ -494,15 +495,15 @@ def test_a_mesh_tells_the_range_of_its_elements_in_the_colours_of_the_picture(tm
 
 
 def test_limits_on_what_is_not_there_are_told_after_everything_is_written(cable: Path, tmp_path: Path) -> None:
-    limits = tables.read_limits("[force.rope]\nmax_force = 1", "l.toml")
+    limits = limit_file.read_limits("[force.rope]\nmax_force = 1", "l.toml")
     with pytest.raises(LimitsError, match=r"l\.toml /force/rope: cable\.3dm has no such force; it has") as caught:
         relax_file(cable, tmp_path / "out.3dm", CABLE, limits=limits, limits_name="l.toml")
     assert (tmp_path / "out.3dm").exists() and caught.value.found.result.converged
     with pytest.raises(InputError, match=r"^l\.toml /max_froce: "):
-        tables.read_limits("max_froce = 1", "l.toml")
+        limit_file.read_limits("max_froce = 1", "l.toml")
     for empty in ("", "{}", '[units]\nforce = "kN"\n', "[force.cable]\n"):  # would pass whatever the result
         with pytest.raises(InputError, match="has no limit"):
-            tables.read_limits(empty, "l.toml")
+            limit_file.read_limits(empty, "l.toml")
 
 
 def test_wrong_files_are_called_what_they_are(cable: Path, tmp_path: Path) -> None:

@@ -14,8 +14,8 @@ from PIL import Image
 
 import hookean
 from hookean import Scene
+from hookean.files.limits import read_limits
 from hookean.files.report import report
-from hookean.files.tables import read_limits
 
 
 class Tables(HTMLParser):

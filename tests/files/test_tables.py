@@ -11,6 +11,7 @@ import pytest
 
 import hookean
 from hookean import Scene
+from hookean.files import limits as limit_file
 from hookean.files import tables
 from hookean.forces import KINDS
 from hookean.system.system import compile
@@ -77,5 +78,5 @@ def test_a_limit_of_reactions_holds_for_floors(limit: float, count: int) -> None
     carried = np.linalg.norm(result.contacts["force"], axis=1).max()
     assert np.linalg.norm(result.reactions["force"], axis=1).max() < 44.0 < carried < 1e3
     system = compile(scene)
-    said = tables.exceeded({"max_reaction": limit}, tables.sections(system, result), system, result)
+    said = limit_file.exceeded({"max_reaction": limit}, tables.sections(system, result), system, result)
     assert said == [f"model: max reaction {carried:.6g} N at particle 4 exceeds the limit 44 N"] * count

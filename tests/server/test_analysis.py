@@ -61,6 +61,16 @@ def test_a_scene_without_equilibrium_is_a_problem(client: httpx.Client) -> None:
     assert client.post("/v1/analysis/frequencies", json={}).status_code == 422
 
 
+def test_masses_of_a_request_are_those_of_the_function(client: httpx.Client) -> None:
+    """The net of the example has no weight: numbers are taken, and a word needs a self_weight; without, a note."""
+    body = ANALYSIS_EXAMPLES["frequencies"]
+    one, four = (client.post("/v1/analysis/frequencies", json={**body, "masses": m}).json() for m in (None, 4.0))
+    assert four["frequencies"] == pytest.approx([0.5 * f for f in one["frequencies"]], rel=1e-9)
+    assert len(one["notes"]) == 1 and four["notes"] == []
+    answer = client.post("/v1/analysis/frequencies", json={**body, "masses": "self_weight"})
+    assert problem(answer, 422, "invalid-input")["errors"][0]["pointer"] == "/masses"
+
+
 def test_load_cases_are_those_of_the_function(client: httpx.Client) -> None:
     """Each on a worker of its own, with the bits of one after another."""
     answer = client.post("/v1/analysis/load-cases", json=CASES_EXAMPLE)

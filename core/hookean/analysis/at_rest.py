@@ -13,6 +13,7 @@ from hookean.forces.base import Block
 from hookean.running.result import Result, Status
 from hookean.running.run import relax_state
 from hookean.running.simulation import Simulation
+from hookean.scene.load_cases import IDLE, case_loads
 from hookean.scene.scene import Scene
 from hookean.solvers import solver
 from hookean.stability.equilibrium import movable
@@ -84,9 +85,11 @@ def relaxed(system: System, state: State, what: str) -> AtRest:
 
 
 def load_numbers(scene: Scene, names: Sequence[str] | None, pointer: str = "loads") -> tuple[int, ...]:
-    """The numbers of the loads of these names (or kinds) in a scene, of all without names; InputError for others."""
+    """The numbers of the loads of these names (or kinds) in a scene, of all without names; InputError for others, and
+    for loads of load cases, which do not act by themselves."""
     from hookean.forces import KINDS
 
+    later = {i: scene.forces[i].name or scene.forces[i].kind_name for i in sorted(case_loads(scene))}
     loads = {i: f for i, f in enumerate(scene.forces) if KINDS[f.kind_name].role == "load"}
     known = ", ".join(dict.fromkeys(f.name or f.kind_name for f in loads.values())) or "none"
     if isinstance(names, str):
@@ -97,8 +100,12 @@ def load_numbers(scene: Scene, names: Sequence[str] | None, pointer: str = "load
         if not mine:
             raise InputError(f"{pointer}/{place}", f"no load is called {name!r}; the scene has {known}")
         found += mine
+    asleep = list(dict.fromkeys(name for i, name in later.items() if name != IDLE and (names is None or i in found)))
+    if asleep:
+        said = f"{', '.join(asleep)}: of load cases, which do not act by themselves; give the name of one as case"
+        raise InputError(pointer, said if names is not None else f"{said}, or loads that act as loads")
     if names is None:
-        found = list(loads)
+        found = [i for i in loads if i not in later]
     if not found:
         raise InputError(pointer, "the scene has no loads; add a load, such as unary or self_weight")
     return tuple(sorted(set(found)))

@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.analysis.arc_length import _sum
-from hookean.analysis.at_rest import AtRest, divided, load_numbers, relaxed
+from hookean.analysis.at_rest import AtRest, divided, relaxed
 from hookean.analysis.frequencies import MOST, _scaled
+from hookean.analysis.load_cases import growing
 from hookean.analysis.matrices import Unknowns, against_turns, factor
 from hookean.analysis.stress_stiffness import known, stress_stiffness
 from hookean.errors import InputError
 from hookean.scene.scene import Scene
 from hookean.system.balance import extents
-from hookean.system.system import compile
 from hookean.values.units import Units
 
 Floats = NDArray[np.float64]
@@ -40,6 +40,9 @@ class Buckling:
     loads: tuple[str, ...] = ()
     units: Units = field(default_factory=Units)
 
+    def __repr__(self) -> str:
+        return "\n".join(["Buckling", *(f"  {line}" for line in self.summary())])
+
     def summary(self) -> list[str]:
         """A line for each factor."""
         if not len(self.factors):
@@ -57,7 +60,7 @@ class Buckling:
         }
 
 
-def buckling(scene: Scene, count: int = 3, *, loads: Sequence[str] | None = None) -> Buckling:
+def buckling(scene: Scene, count: int = 3, *, loads: Sequence[str] | None = None, case: str | None = None) -> Buckling:
     """Linear buckling factors and modes: (K + lambda G) phi = 0.
 
     K is the exact tangent stiffness in equilibrium without `loads`, with prestress and all other loads; u = K^-1 F the
@@ -69,17 +72,17 @@ def buckling(scene: Scene, count: int = 3, *, loads: Sequence[str] | None = None
     - `scene`: The structure with its loads.
     - `count`: How many factors.
     - `loads`: Names (or kinds) of the loads that grow; default: all.
+    - `case`: A load case or combination: its elastic model, in the form, under its loads times their factors.
 
     Raises InputError where the structure has no stiffness without these loads, or is not in equilibrium.
     Source: Bathe, Finite Element Procedures, 1996, section 6.8.2.
     """
     if not (isinstance(count, int) and 1 <= count <= MOST):
         raise InputError("count", f"{count!r} given; a whole number from 1 to {MOST} is expected")
-    system = compile(scene)
+    system, state, numbers = growing(scene, loads, case)
     if system.films is not None:
         raise InputError("model", "soap films do not buckle linearly; freeze the form and analyse the elastic model")
-    numbers = load_numbers(scene, loads)
-    (rest_system, start), (load_system, load_state) = divided(system, system.start(), numbers)
+    (rest_system, start), (load_system, load_state) = divided(system, state, numbers)
     rest = relaxed(rest_system, start, "without the loads")
     load_state.x = rest.state.x
     unknowns = Unknowns.of(rest_system, rest.state, rest.free)
@@ -96,7 +99,7 @@ def buckling(scene: Scene, count: int = 3, *, loads: Sequence[str] | None = None
     inverse, vectors = _softest(stiffness, change, size, found, min(count, size))
     kept = inverse < -1e-12 * max(float(np.abs(inverse).max(initial=0.0)), 1e-300)
     modes = [_scaled(unknowns.spread(vector)) for vector in vectors.T[kept]]
-    names = tuple(scene.forces[i].name or scene.forces[i].kind_name for i in numbers)
+    names = tuple(system.scene.forces[i].name or system.scene.forces[i].kind_name for i in numbers)
     shape = (-1, len(rest.state.x), 3)
     count = rest.system.slots.count
     shapes = np.array(modes).reshape(shape)[:, :count]

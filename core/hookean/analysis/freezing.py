@@ -15,9 +15,11 @@ from hookean.errors import InputError
 from hookean.forces import Block, Force, base, elastic
 from hookean.forces.base import Places
 from hookean.forces.membrane import Membrane
+from hookean.forces.self_weight import SelfWeight
 from hookean.forces.sliding_cable import SlidingCable, taut
 from hookean.forces.soapfilm import SoapFilm
 from hookean.forces.springs import Springs
+from hookean.linear.film_tangent import patterned
 from hookean.linear.pattern import Pattern
 from hookean.running.result import Result, Status, gather
 from hookean.running.run import relax_state
@@ -35,6 +37,7 @@ Floats = NDArray[np.float64]
 
 STEPS = 12  # of Newton's method that take a form to rounding
 SETTLED = 1e-9  # part of the forces and of the size that counts as none
+HEAVY = 0.03  # part of a weight by which that of the form may differ, as stretched cloth does
 ELASTIC = ("anchor_spring", "bend", "gas", "hinge", "membrane", "beam", "power_law", "shell", "springs", "volume")
 """Internal forces and supports that stay as they are, besides those that `FREEZERS` turns into others."""
 
@@ -142,6 +145,7 @@ def freeze(scene: Scene) -> Frozen:
             elif group.cls.role == "internal" and part.number not in slides and group.cls.kind_name not in ELASTIC:
                 name = force.name or force.kind_name
                 notes.append(f"/forces/{part.number}: {name} is not elastic and acts on the frozen model as before")
+    notes += _heavy(system, state)
     frozen = scene.replaced(forces=tuple(forces))
     turned = system.slots.quaternions(state.x)
     found = state.x[: system.slots.count].copy()
@@ -152,6 +156,20 @@ def freeze(scene: Scene) -> Frozen:
     if not np.array_equal(other.x, system.x):
         raise InputError("/forces", "the frozen model has other particles than the form; name particles by index")
     return model
+
+
+def _heavy(system: System, state: State) -> list[str]:
+    """Notes on weights that count the start shape, where the form is longer or larger or smaller."""
+    notes, unit = list[str](), system.scene.units.force
+    for number, force in enumerate(system.scene.forces):
+        if not isinstance(force, SelfWeight) or (there := force.weight_at(system.places, state.x)) is None:
+            continue
+        start = force.weight_at(system.places, system.x) or 0.0
+        if abs(start - there) > HEAVY * abs(there):
+            name, other = force.name or force.kind_name, "line_weight" if force.element_arity == 2 else "area_weight"
+            said = f"is the weight of the start shape, {start:.4g} {unit}"
+            notes.append(f"/forces/{number}: {name} {said}; the form weighs {there:.4g} {unit}, which {other} gives")
+    return notes
 
 
 def _clothed(system: System, state: State, stages: Stages) -> tuple[System, State, list[str]]:
@@ -196,24 +214,26 @@ def _form(scene: Scene, stages: Stages) -> tuple[System, State, Result]:
         found = balance(system, state)
         said = "The form is the start shape."
         return system, state, gather(system, state, found, None, Status.CONVERGED, said, "none", moving=False)
-    result = relax_state(system, state, solver(scene.settings.solver))
+    method = solver(scene.settings.solver)
+    result = relax_state(system, state, method)
     if not result.converged:
         raise InputError("model", f"no form was found: {result.message}")
-    sharpen(system, state)
+    sharpen(system, state, method.pattern)
     found = balance(system, state)
     rest = assess(system, state, found)
     form = gather(system, state, found, rest, result.status, result.message, result.solver, moving=False)
     return system, state, form
 
 
-def sharpen(system: System, state: State) -> None:
-    """Take a shape at rest to rounding by Newton steps, as long as they bring it nearer."""
+def sharpen(system: System, state: State, known: Pattern | None = None) -> None:
+    """Take a shape at rest to rounding by Newton steps, as long as they bring it nearer; `known` is the pattern of its
+    tangent, if there is one."""
     if system.no_tangent() or system.contacts:
         return
     rest = AtRest.checked(system, state, True, "")
     unknowns = Unknowns.of(system, state, rest.free)
     plain = unknowns.sparse and system.films is None and not len(system.slots)
-    pattern = Pattern(system, rest.free) if plain else None  # which is worked out once for all steps
+    pattern = patterned(system, state, rest.free, known) if plain else None  # worked out once for all steps
     left = system.evaluate(state)[0] * rest.free
     for _ in range(STEPS):
         if pattern is not None:

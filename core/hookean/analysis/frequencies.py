@@ -11,15 +11,19 @@ from numpy.typing import NDArray
 from hookean.analysis.at_rest import AtRest
 from hookean.analysis.matrices import Unknowns, against_turns, condensed, factor, largest_row
 from hookean.errors import InputError
+from hookean.forces.self_weight import SelfWeight
 from hookean.running.result import Result
 from hookean.running.simulation import Simulation
 from hookean.scene.scene import Scene
+from hookean.values.materials import gravity
 from hookean.values.units import Units
 
 Floats = NDArray[np.float64]
 
 ROUNDING = 4.0 * float(np.finfo(np.float64).eps)  # part of the largest eigenvalue that rounding may leave of one
 MOST = 1000
+WEIGHED = SelfWeight.kind_name  # masses of the self-weight
+UNIT_MASSES = f'every particle has the mass 1, the default; for a real structure give masses, or masses "{WEIGHED}"'
 
 
 @dataclass(frozen=True)
@@ -29,7 +33,8 @@ class Frequencies:
     `frequencies` (k,) and `angular_frequencies` (k,) [1/time]; 0 for motions that nothing resists, negative for
     motions that grow (the shape is unstable there: the square of the angular frequency is negative). `modes` (k, n, 3)
     the motions of the particles, the largest part of each 1 [-]. `effective_masses` (k, 3) [mass]: the mass that moves
-    with a mode when the supports shake along x, y or z, out of `mass` (3,) that can move.
+    with a mode when the supports shake along x, y or z, out of `mass` (3,) that can move. `notes` are sentences on the
+    masses.
     """
 
     frequencies: Floats
@@ -39,6 +44,10 @@ class Frequencies:
     mass: Floats
     particles: Floats = field(repr=False)
     units: Units = field(default_factory=Units)
+    notes: tuple[str, ...] = ()
+
+    def __repr__(self) -> str:
+        return "\n".join(["Frequencies", *(f"  {line}" for line in self.summary())])
 
     @property
     def periods(self) -> list[float | None]:
@@ -46,12 +55,12 @@ class Frequencies:
         return [1.0 / f if f > 0.0 else None for f in self.frequencies.tolist()]
 
     def summary(self) -> list[str]:
-        """A line for each mode: frequency and period."""
+        """A line for each mode, frequency and period, and notes."""
         unit, lines = self.units.time, []
         for i, (found, period) in enumerate(zip(self.frequencies.tolist(), self.periods, strict=True)):
             end = f"period {period:.6g} {unit}" if period else "no resistance" if found == 0.0 else "unstable"
             lines.append(f"mode {i + 1}: {found:.6g} 1/{unit}, {end}")
-        return lines
+        return [*lines, *self.notes]
 
     def to_dict(self) -> dict[str, Any]:
         """As plain lists and numbers, by the names of the HTTP answer."""
@@ -64,6 +73,7 @@ class Frequencies:
             "mass": self.mass.tolist(),
             "particles": self.particles.tolist(),
             "units": self.units.model_dump(),
+            "notes": list(self.notes),
         }
 
 
@@ -75,7 +85,8 @@ def frequencies(model: Scene | Result | Simulation, count: int = 6, *, masses: A
 
     - `model`: A scene (which is relaxed), a result that converged, or a simulation at rest.
     - `count`: How many modes; fewer are returned where the shape has fewer free axes.
-    - `masses`: Masses (n,) of the particles, or one for all [force time^2/length]; default: those of the scene.
+    - `masses`: Masses (n,) of the particles, or one for all [force time^2/length]; "self_weight": those of the
+      `self_weight` forces, their weight over g; default: those of the scene, 1 unless given.
 
     Raises InputError for a shape that is not at rest, a force without a tangent, or masses that are not positive.
     Source: Clough and Penzien, Dynamics of Structures, 1993, chapters 11 to 13; Ericsson and Ruhe, The spectral
@@ -104,6 +115,7 @@ def frequencies(model: Scene | Result | Simulation, count: int = 6, *, masses: A
         np.asarray((rest.free * mass[:, None])[:own_rows].sum(axis=0)),
         rest.state.x[:own_rows],
         rest.system.scene.units,
+        (UNIT_MASSES,) if masses is None and (mass[:own_rows] == 1.0).all() else (),
     )
 
 
@@ -111,6 +123,10 @@ def _masses(rest: AtRest, given: Any) -> Floats:
     if given is None:
         return rest.system.mass
     slots, count = rest.system.slots, rest.system.slots.count
+    if isinstance(given, str):
+        if given != WEIGHED:
+            raise InputError("masses", f'{given!r} given; give numbers, or "{WEIGHED}"')
+        given = _weighed(rest)
     try:
         mass = np.array(np.broadcast_to(np.asarray(given, dtype=float), (count,)))
     except (TypeError, ValueError):
@@ -121,6 +137,27 @@ def _masses(rest: AtRest, given: Any) -> Floats:
     rows = slots.extended(mass, 1.0)
     rows[slots.first] = mass[slots.particles]  # a rotation has the mass of its particle
     return rows
+
+
+def _weighed(rest: AtRest) -> Floats:
+    """Masses (n,) of the `self_weight` forces that act; InputError where a particle that moves has none."""
+    system = rest.system
+    found = np.zeros(system.slots.count)
+    for group in system.groups:
+        if group.cls is not SelfWeight:
+            continue
+        for part in group.parts:
+            block, force = group.of(part), part.force
+            g = gravity(system.scene.units) if force.gravity is None else force.gravity
+            weight = np.linalg.norm(block.parameters[:, :3], axis=1)
+            found += np.bincount(block.indices[:, 0], weight / g if g > 0.0 else 0.0 * weight, len(found))
+    without = found <= 0.0
+    moves = np.flatnonzero(without & (rest.free[: len(found)] > 0.0).any(axis=1))
+    if len(moves):
+        said = f"particle {moves[0]} moves and has no self_weight; add one there, or give masses as numbers"
+        raise InputError("masses", said)
+    found[without] = 1.0  # held in all axes: it does not count
+    return found
 
 
 def lowest(stiffness: Any, mass: Floats, count: int) -> tuple[Floats, Floats]:

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean.analysis.at_rest import load_numbers
 from hookean.analysis.envelope import Envelope, envelope
 from hookean.analysis.freezing import Frozen, freeze
 from hookean.analysis.load_factors import scaled, warmed
@@ -21,14 +22,15 @@ from hookean.forces import KINDS, Force
 from hookean.forces.springs import Springs
 from hookean.running.result import Result
 from hookean.running.run import relax_state
-from hookean.scene.load_cases import PERMANENT, PRESTRESS, LoadCase, case_loads, named
+from hookean.scene.load_cases import IDLE, PERMANENT, PRESTRESS, LoadCase, case_loads, named
 from hookean.scene.scene import Scene
 from hookean.solvers import solver
+from hookean.system.state import State
+from hookean.system.system import System, compile
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-IDLE = "loads that do not act"
 ROUNDING = 1e-12  # strain below which a cable is as long as it was made, and not slack
 
 
@@ -202,6 +204,21 @@ def _temperatures(frozen: Frozen, given: Mapping[str, float]) -> dict[int, float
                     raise InputError(f"/load_cases/{name}/temperature/{line}", said)
                 found[number] = found.get(number, 0.0) + factor * case.factor * degrees
     return found
+
+
+def growing(scene: Scene, loads: Sequence[str] | None, case: str | None) -> tuple[System, State, tuple[int, ...]]:
+    """What analyses of growing loads begin with: a system, its state, and the numbers of the loads that grow. With a
+    load case or combination it is the elastic model of that case, in the form, under its loads times their factors.
+
+    Raises InputError for loads or a case that is not there, and for loads of cases without a case.
+    """
+    if case is None:
+        system = compile(scene)
+        return system, system.start(), load_numbers(scene, loads)
+    (name,) = wanted(scene, case)
+    frozen = freeze(scene)
+    own = case_scene(frozen, name)
+    return *frozen.system(own), load_numbers(own, loads)
 
 
 def solve_case(frozen: Frozen, name: str) -> CaseResult:

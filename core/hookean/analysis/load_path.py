@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.analysis.arc_length import Follower, Point
-from hookean.analysis.at_rest import divided, load_numbers, relaxed
+from hookean.analysis.at_rest import divided, relaxed
+from hookean.analysis.load_cases import growing
 from hookean.errors import InputError
 from hookean.scene.scene import Scene
-from hookean.system.system import compile
 from hookean.values.units import Units
 
 Floats = NDArray[np.float64]
@@ -62,6 +62,9 @@ class LoadPath:
         """The load factor of the first limit point or bifurcation [-]; None where there was none."""
         return self.critical_points[0].factor if self.critical_points else None
 
+    def __repr__(self) -> str:
+        return "\n".join(["Load path", *(f"  {line}" for line in self.summary())])
+
     def summary(self) -> list[str]:
         """A few lines: points, largest factor, critical points, why it ended."""
         unit, far = self.units.length, np.linalg.norm(self.displacements, axis=2).max(initial=0.0)
@@ -91,6 +94,7 @@ def load_path(
     increment: float = 0.1,
     largest_factor: float | None = None,
     arc_length: float | None = None,
+    case: str | None = None,
 ) -> LoadPath:
     """Follow the equilibrium of a structure as some of its loads grow from nothing, also where they have to shrink.
 
@@ -107,19 +111,19 @@ def load_path(
     - `largest_factor`: End at this load factor [-], exactly; default: only after all steps.
     - `arc_length`: The length of a step [length], the root of the sum of squares of all movements; default: from
       `increment`.
+    - `case`: A load case or combination: its elastic model, in the form, under its loads times their factors.
 
     Raises InputError where the structure has no stiffness without these loads, or is not in equilibrium.
     Source: Crisfield, A fast incremental/iterative solution procedure that handles snap-through, 1981; Wriggers and
     Simo, A general procedure for the direct computation of turning and bifurcation points, 1990.
     """
     _checked(steps, increment, largest_factor, arc_length)
-    system = compile(scene)
+    system, state, numbers = growing(scene, loads, case)
     if system.films is not None:
         raise InputError("model", "soap films have no load path; freeze the form and analyse the elastic model")
-    numbers = load_numbers(scene, loads)
-    (rest_system, start), growing = divided(system, system.start(), numbers)
+    (rest_system, start), alone = divided(system, state, numbers)
     rest = relaxed(rest_system, start, "without the loads")
-    follower = Follower(rest, *growing)
+    follower = Follower(rest, *alone)
     count = rest.system.slots.count
     points, critical = [follower.first()], list[CriticalPoint]()
     reach = arc_length or follower.reach(points[0], increment)
@@ -136,7 +140,7 @@ def load_path(
             critical = [c for c in critical if c.step < len(points) - 2 or abs(c.factor) <= abs(largest_factor)]
             message = f"the load factor reached {largest_factor:g}"
             break
-    names = tuple(scene.forces[i].name or scene.forces[i].kind_name for i in numbers)
+    names = tuple(system.scene.forces[i].name or system.scene.forces[i].kind_name for i in numbers)
     return LoadPath(
         np.array([p.factor for p in points]),
         np.array([p.x[:count] for p in points]),

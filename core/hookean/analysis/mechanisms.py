@@ -63,6 +63,9 @@ class Mechanisms:
         kinematically = "kinematically indeterminate" if self.mechanisms else "kinematically determinate"
         return f"{statically} and {kinematically}"
 
+    def __repr__(self) -> str:
+        return "\n".join(["Mechanisms", *(f"  {line}" for line in self.summary())])
+
     def summary(self) -> list[str]:
         """The counts, for a person."""
         beams = f"{self.beams} beams, " if self.beams else ""

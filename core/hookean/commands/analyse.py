@@ -33,11 +33,18 @@ class Options:
         Path | None, typer.Option("--recipe", "-r", help="Recipe (TOML, JSON); default: layer names define the model")
     ] = None
     frequencies: Annotated[int, typer.Option(help="How many natural frequencies", min=0)] = 0
+    weight_masses: Annotated[
+        bool,
+        typer.Option("--weight-masses", help="Masses from the self_weight of the model instead of its particles"),
+    ] = False
     buckling: Annotated[int, typer.Option(help="How many linear buckling factors", min=0)] = 0
     load_path: Annotated[int, typer.Option(help="Follow the load-displacement path by so many steps", min=0)] = 0
     mechanisms: Annotated[bool, typer.Option("--mechanisms", help="Count mechanisms and states of self-stress")] = False
     load: Annotated[
         list[str] | None, typer.Option(metavar="NAME", help="A load that grows, by name; may be repeated; default: all")
+    ] = None
+    case: Annotated[
+        str | None, typer.Option(metavar="NAME", help="Load case or combination whose loads grow, from the form")
     ] = None
     increment: Annotated[float, typer.Option(help="Load factor of the first step of a path")] = 0.1
     report: Annotated[
@@ -87,16 +94,17 @@ def _chosen(options: Options) -> dict[str, Callable[[Scene], Any]]:
     """The analyses that the options ask for, by the names of their sections."""
     import hookean
 
-    loads = options.load
+    loads, case = options.load, options.case
     plain = not (options.frequencies or options.buckling or options.load_path or options.mechanisms)
     chosen: dict[str, Callable[[Scene], Any]] = {}
     if options.frequencies or plain:
-        chosen["frequencies"] = lambda scene: hookean.frequencies(scene, options.frequencies or 6)
+        masses = "self_weight" if options.weight_masses else None
+        chosen["frequencies"] = lambda scene: hookean.frequencies(scene, options.frequencies or 6, masses=masses)
     if options.buckling:
-        chosen["buckling"] = lambda scene: hookean.buckling(scene, options.buckling, loads=loads)
+        chosen["buckling"] = lambda scene: hookean.buckling(scene, options.buckling, loads=loads, case=case)
     if options.load_path:
         chosen["load_path"] = lambda scene: hookean.load_path(
-            scene, loads=loads, steps=options.load_path, increment=options.increment
+            scene, loads=loads, steps=options.load_path, increment=options.increment, case=case
         )
     if options.mechanisms or plain:
         chosen["mechanisms"] = hookean.mechanisms

@@ -211,7 +211,7 @@ def _limits(path: Path | None) -> dict[str, Any] | None:
     if path is None:
         return None
     text = text_of(path)
-    from hookean.files.tables import read_limits
+    from hookean.files.limits import read_limits
 
     return read_limits(text, path.name)
 

@@ -47,8 +47,8 @@ def run(options: Options) -> int:
             raise InputError(target.name, "is not an .html file; give a name that ends in .html")
         outputs.check([target], (options.source, options.recipe, options.check))
         from hookean.atomic_write import put
+        from hookean.files.limits import read_limits
         from hookean.files.report import reported
-        from hookean.files.tables import read_limits
 
         limits = None if options.check is None else read_limits(relax.text_of(options.check), options.check.name)
         scene = analyse.scene_of(options.source, options.recipe)

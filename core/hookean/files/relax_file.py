@@ -21,6 +21,7 @@ import numpy as np
 from hookean.atomic_write import check_target, put
 from hookean.errors import InputError
 from hookean.files import embedded, obj, tables
+from hookean.files import limits as limit_file
 from hookean.files.exchange.write import EXCHANGED, ending_of, exchange
 from hookean.files.readers import Recipe, Source, about, read_path
 from hookean.running.claims import document_text
@@ -136,7 +137,7 @@ def relax_file(
     A saved simulation goes on from the shape that it has. A .3dm target is a copy of a .3dm source with results below
     the layer `hookean`, or a new file; a .json target is the result (of a COMPAS Mesh or Graph that document with its
     new shape), an .obj target the shape alone. A shape short of equilibrium is written too, a cancelled one is not.
-    `limits` as `tables.read_limits` gives them; pointers into the recipe stand behind `recipe_name`. The source is
+    `limits` as `limits.read_limits` gives them; pointers into the recipe stand behind `recipe_name`. The source is
     never written. `reading` is entered while the source is read. A solve longer than `seconds` ends with the status
     `time_limit`. With a `case` the form is found and frozen, and the result is that of the load case or combination of
     this name; displacements are those from the form.
@@ -218,7 +219,7 @@ def conclude(
     fault: InputError | None = None
     if limits is not None:
         try:
-            found.exceeded = tables.exceeded(limits, parts, system, result, limits_name, source.name)
+            found.exceeded = limit_file.exceeded(limits, parts, system, result, limits_name, source.name)
         except InputError as error:
             fault = error
     if target is not None and result.status is not Status.CANCELLED:

@@ -12,6 +12,7 @@ import numpy as np
 
 from hookean.analysis.envelope import Envelope, Extremes, first_largest
 from hookean.analysis.load_cases import CaseResult, LoadCases, load_cases
+from hookean.files import limits as limit_file
 from hookean.files import tables
 from hookean.forces import KINDS
 from hookean.pictures.picture import picture
@@ -66,7 +67,7 @@ def reported(
     """The report of a scene.
 
     With load cases the form is found and frozen, and all cases and combinations are solved; else the scene is relaxed.
-    `limits`, as `tables.read_limits` gives them, are checked in each case. The same scene gives the same text. `cases`
+    `limits`, as `limits.read_limits` gives them, are checked in each case. The same scene gives the same text. `cases`
     of this scene that are solved already are not solved again; else `processes` solve them side by side.
     Raises InputError where the scene cannot be relaxed or frozen, or a limit names what it does not have.
     """
@@ -113,6 +114,7 @@ def _scene(scene: Scene, form: Result) -> Iterator[str]:
 def _form(scene: Scene, form: Result, pictures: bool) -> Iterator[str]:
     yield "<h2>Form</h2>"
     yield f"<p>{escape(form.message)} Stability: {form.stability}.</p>"
+    yield from _warned(form)
     if pictures:
         yield _picture(form, "Form and forces in it")
     yield from _loads(form, "Loads that act on the form")
@@ -120,6 +122,10 @@ def _form(scene: Scene, form: Result, pictures: bool) -> Iterator[str]:
     yield _table(("force", "column", "smallest", "largest", "unit"), _ranges(form))
     if not (scene.load_cases or scene.combinations):
         yield from _missing(scene, form)
+
+
+def _warned(result: Result) -> Iterator[str]:
+    yield from (f"<p>Warning: {escape(sentence)}</p>" for sentence in result.report.warnings)
 
 
 def _ranges(result: Result) -> Iterator[tuple[Any, ...]]:
@@ -275,6 +281,7 @@ def _case(case: CaseResult, exceeded: Sequence[str] | None, pictures: bool) -> I
     yield f"<h2>Case {escape(case.name)}</h2>"
     given = " + ".join(f"{factor:g} x {name}" for name, factor in case.factors.items())
     yield f"<p>{escape(given)}. {escape(case.result.message)} Stability: {case.result.stability}.</p>"
+    yield from _warned(case.result)
     if pictures:
         yield _picture(case.result, f"Shape and forces under {case.name}")
     yield from _loads(case.result, "Loads")
@@ -292,7 +299,7 @@ def _exceeded_in(case: CaseResult, cases: LoadCases, limits: Mapping[str, Any]) 
 
 
 def _exceeded(limits: Mapping[str, Any], system: System, result: Result) -> list[str]:
-    return tables.exceeded(limits, tables.sections(system, result), system, result, source="the scene")
+    return limit_file.exceeded(limits, tables.sections(system, result), system, result, source="the scene")
 
 
 def _checks(exceeded: Sequence[str]) -> Iterator[str]:

@@ -1,43 +1,20 @@
-"""Results as tables: rows keyed by the object they came from, CSV text, sums for each object, and limits.
-
-A limits file is TOML (or JSON). Limits of the whole model come first; `[force.NAME]`, `[layer.NAME]` and
-`[anchor.NAME]` hold for a force (its name or kind), a layer (path or name, sublayers included) or an anchor:
-
-    max_force = 250          # tension of any element
-    min_force = -5           # compression
-    max_strain = 0.02        # of either sign
-    max_displacement = 0.1   # of any particle from its start
-    max_reaction = 500       # of a support, or of a floor on a particle
-    max_utilisation = 0.5    # part of the strength of any element
-    max_stress = 235e6       # of lines and beams of a section, of either sign
-    max_moment = 20          # bending of beams about either axis
-    max_slack = 0            # number of tension-only elements that hang slack
-    units = {length = "m", force = "kN"}   # without it those of the scene
-
-    [layer.cables]
-    max_force = 120
-"""
+"""Results as tables: rows keyed by the object they came from, CSV text, and sums for each object."""
 
 from __future__ import annotations
 
 import csv
 import io
-import math
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import ValidationError
 
-from hookean.analysis.load_cases import slack_elements
-from hookean.errors import InputError
 from hookean.files import cells
 from hookean.forces.floor import Floor
 from hookean.running.result import Result
-from hookean.running.utilisation import NAME, STRESS, dimensions
+from hookean.running.utilisation import dimensions
 from hookean.system.system import System
 from hookean.values.units import Units
 
@@ -50,27 +27,9 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Row = dict[str, Any]
 
-LIMITS = {
-    "max_force": "force",
-    "min_force": "force",
-    "max_strain": "",
-    "max_displacement": "length",
-    "max_reaction": "force",
-    "max_utilisation": "",
-    "max_stress": "force/length^2",
-    "max_moment": "moment",
-    "max_slack": "",
-}
-BENDING = ("My0", "Mz0", "My1", "Mz1")
-NEEDED = {
-    "max_utilisation": "no element has a known strength; give materials with strength, or strength, to the forces",
-    "max_stress": "no element has a known section; give material and section to springs or beams",
-    "max_moment": "no element is a beam; give max_moment for beams",
-}
-"""Limits of what not every element has, and what to do where none has it."""
-_SCOPES = ("force", "layer", "anchor")
 CARRIED = ("reaction", "contact")
 """The kinds of rows of what supports and floors carry."""
+FLOOR = Floor.kind_name
 TOUCHING = 1e-12  # height above a floor, / coordinates, that counts as 0
 
 
@@ -128,7 +87,7 @@ def _contacts(system: System, result: Result) -> Section:
     particles = np.asarray(result.contacts["particles"], dtype=np.int64)
     force = np.asarray(result.contacts["force"], dtype=np.float64).reshape(-1, 3)
     at, names = result.particles[particles], [list[str]() for _ in particles]
-    for floor in system.scene.forces:
+    for floor in (*system.scene.forces, system.scene.settings.floor):
         if isinstance(floor, Floor):
             height = (at - floor.point) @ (np.asarray(floor.normal) / np.linalg.norm(floor.normal))
             size = np.abs(at).max(axis=1) + np.abs(floor.point).max()
@@ -267,160 +226,3 @@ def per_object(parts: Sequence[Section], units: Units) -> list[Row]:
                 entry[f"length [{units.length}]"] = float(part.columns["length"][mine].sum())
             found.append(entry)
     return found
-
-
-def read_limits(text: str, name: str = "limits") -> dict[str, Any]:
-    """Limits from TOML or JSON text; InputError where it is neither, names an unknown limit or has none."""
-    from hookean.scene.text import parse_tables
-
-    limits = parse_tables(text, name)
-    _known(limits, f"{name} ", (*LIMITS, "units", *_SCOPES))
-    for scope in _SCOPES:
-        tables = limits.get(scope, {})
-        if not isinstance(tables, dict):
-            raise InputError(f"{name} /{scope}", f"give tables such as [{scope}.NAME]")
-        for key, table in tables.items():
-            _known(table, f"{name} /{scope}/{key}", tuple(LIMITS))
-    scopes = [table for scope in _SCOPES for table in limits.get(scope, {}).values()]
-    if not any(key in LIMITS for table in (limits, *scopes) for key in table):
-        raise InputError(name, f"has no limit, so that nothing would be checked; give one of {', '.join(LIMITS)}")
-    return limits
-
-
-def _known(table: Any, pointer: str, allowed: tuple[str, ...]) -> None:
-    if not isinstance(table, dict):
-        raise InputError(pointer, "give a table of limits")
-    for key, value in table.items():
-        if key not in allowed:
-            raise InputError(f"{pointer}/{key}", f"unknown limit; known: {', '.join(allowed)}")
-        if key in LIMITS and (
-            isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value)
-        ):
-            raise InputError(f"{pointer}/{key}", f"{value!r} given; give a number")
-
-
-def exceeded(
-    limits: Mapping[str, Any],
-    parts: Sequence[Section],
-    system: System,
-    result: Result,
-    name: str = "limits",
-    source: str = "the file",
-) -> list[str]:
-    """A sentence for each limit that is exceeded; InputError where one names a force, layer or anchor that is not
-    there, for it could never be exceeded."""
-    try:
-        units = Units.model_validate({**result.units.model_dump(), **limits.get("units", {})})
-    except (ValidationError, TypeError):
-        raise InputError(f"{name} /units", 'give a table such as {length = "m", force = "kN"}') from None
-    found = _check("model", limits, [(p, np.ones(len(p.particles), bool)) for p in parts], system, result, units)
-    for scope in _SCOPES:
-        for key, table in limits.get(scope, {}).items():
-            chosen = [(p, _mask(p, scope, key)) for p in parts]
-            if not any(mask.any() for _, mask in chosen):
-                there = f"has no such {scope}; it has {_there(parts, scope)}"
-                raise InputError(f"{name} /{scope}/{key}", f"{source} {there}")
-            found += _check(f"{scope} {key}", table, chosen, system, result, units)
-    return found
-
-
-def _mask(part: Section, scope: str, key: str) -> NDArray[np.bool_]:
-    count = len(part.particles)
-    if scope == "layer":
-        from hookean.files.recipe.select import on_layer
-
-        good = [on_layer(item.layer, key) for item in part.items]
-        return np.array([o >= 0 and good[o] for o in part.owner.tolist()], dtype=bool).reshape(count)
-    if scope == "anchor":
-        supports = part.names if part.kind == "reaction" else []
-        return np.array([n == key for n in supports] or [False] * count, dtype=bool).reshape(count)
-    # forces of one layer without a recipe are numbered: cables, cables/2
-    base = re.sub(r"/\d+$", "", part.name)
-    return np.full(count, part.kind not in CARRIED and key in (part.name, part.kind, base))
-
-
-def _there(parts: Sequence[Section], scope: str) -> str:
-    from hookean.files.recipe.select import listed
-
-    if scope == "layer":
-        return listed(part.items[o].layer for part in parts for o in np.unique(part.owner) if o >= 0)
-    if scope == "anchor":
-        return listed(name for part in parts if part.kind == "reaction" for name in part.names if name)
-    return listed(name for part in parts if part.kind not in CARRIED for name in (part.name, part.kind))
-
-
-def _check(
-    where: str,
-    limits: Mapping[str, Any],
-    chosen: Sequence[tuple[Section, NDArray[np.bool_]]],
-    system: System,
-    result: Result,
-    units: Units,
-) -> list[str]:
-    moved = np.linalg.norm(result.particles - system.points, axis=1)
-    found = []
-    for limit, dimension in LIMITS.items():
-        if limit not in limits:
-            continue
-        if limit == "max_slack":
-            found += _slack(where, limits[limit], chosen, system)
-            continue
-        scale = result.units.factor(dimension, units)
-        worst, place = -math.inf, ""
-        for part, mask in chosen:
-            values = _values(part, limit, moved)
-            if values is None or not mask.any():
-                continue
-            at = int(np.flatnonzero(mask)[np.argmax(values[mask])])
-            if float(values[at]) > worst:
-                worst, place = float(values[at]), _spot(part, at)
-        if limit in NEEDED and not place:
-            raise InputError(f"{where} {limit}", NEEDED[limit])
-        sign = -1.0 if limit == "min_force" else 1.0
-        if worst * scale > sign * limits[limit]:
-            unit = units.of(dimension)
-            what = limit.replace("_", " ")
-            below = "is below" if sign < 0 else "exceeds"
-            value = f"{sign * worst * scale:.6g} {unit}".strip()
-            found.append(f"{where}: {what} {value} at {place} {below} the limit {limits[limit]:g} {unit}".strip())
-    return found
-
-
-def _slack(where: str, limit: float, chosen: Sequence[tuple[Section, NDArray[np.bool_]]], system: System) -> list[str]:
-    """A sentence if more elements than the limit hang slack."""
-    places = []
-    for part, mask in chosen:
-        if part.number >= 0:
-            rows = slack_elements(system.scene.forces[part.number], part.columns)
-            places += [_spot(part, int(row)) for row in rows[mask[rows]]]
-    if len(places) <= limit:
-        return []
-    return [f"{where}: {len(places)} elements are slack, the first is {places[0]}; at most {limit:g} may be"]
-
-
-def _values(part: Section, limit: str, moved: Floats) -> Floats | None:
-    """The value that a limit checks, the larger the worse; None if the section has no such value."""
-    if limit == "max_displacement":
-        far: Floats = moved[part.particles].max(axis=1, initial=0.0)
-        return far
-    if limit == "max_reaction":
-        return np.linalg.norm(part.columns["force"], axis=1) if part.kind in CARRIED else None
-    if limit == "max_strain":
-        return np.abs(part.columns["strain"]) if "strain" in part.columns else None
-    if limit == "max_utilisation":
-        return part.columns.get(NAME)
-    if limit == "max_stress":
-        return np.abs(part.columns[STRESS]) if STRESS in part.columns else None
-    if limit == "max_moment":
-        ends = [np.abs(part.columns[name]) for name in BENDING if name in part.columns]
-        return np.max(ends, axis=0) if ends else None
-    if not part.internal:
-        return None
-    return part.columns["force"] if limit == "max_force" else -part.columns["force"]
-
-
-def _spot(part: Section, row: int) -> str:
-    item = part.item(row)
-    called = f" of {item.label}" if item is not None else ""
-    thing = f"particle {part.particles[row, 0]}" if part.kind in CARRIED else f"element {row} of {part.name}"
-    return thing + called

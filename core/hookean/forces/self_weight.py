@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import model_validator
 
 from hookean.errors import InputError
-from hookean.forces.base import Block, Floats, Force, OnFilm, Places
+from hookean.forces.base import Block, Floats, Force, Ints, OnFilm, Places
 from hookean.forces.elastic import area
 from hookean.forces.soapfilm import halves
 from hookean.forces.unary import unary_kernel
@@ -26,7 +26,8 @@ class SelfWeight(Force):
     total is left out. With a weight per length, give lines, pairs of particles or a mesh (its edges). A material with a
     section weighs density x area x gravity per start length of the same; a cloth, or a solid with a thickness, weighs
     that on the faces of a mesh, a third of each triangle's on each of its corners. The load does not change as lines
-    and faces stretch: weight is conserved. Energy -W d . x. Source: the chapter, 9.5.
+    and faces stretch: weight is conserved. A form that is found may be far longer or larger than it was drawn; there
+    `line_weight` and `area_weight` weigh what it is. Energy -W d . x. Source: the chapter, 9.5.
     """
 
     kind: Literal["self_weight"] = "self_weight"
@@ -97,20 +98,31 @@ class SelfWeight(Force):
             index = places.elements(self)
             share = self.total / max(len(index), 1)  # of all points, also of those that met no particle
             return Block.of(index, vector=np.broadcast_to(share * down, (len(index), 3)))
+        index, each = self.shares(places, places.x)
+        weight = np.bincount(index.ravel(), np.repeat(each, index.shape[1]), len(places.x))
+        particles = np.unique(index)
+        return Block.of(particles[:, None], vector=weight[particles, None] * down)
+
+    def weight_at(self, places: Places, x: Floats) -> float | None:
+        """Weight [force] of a material, or per length, if its lines or faces had started at `x`; None of a total."""
+        if self.total is not None:
+            return None
+        index, each = self.shares(places, x)
+        return float(index.shape[1] * each.sum())
+
+    def shares(self, places: Places, x: Floats) -> tuple[Ints, Floats]:
+        """Particles (m, 2) of lines or (m, 3) of triangles, and the weight (m,) on each of these, as long or large as
+        they are at `x`."""
         if self._along:
             lines = places.elements(self)
             met = (lines >= 0).all(axis=1)
             index = lines[met]
-            length = np.linalg.norm(places.x[index[:, 1]] - places.x[index[:, 0]], axis=1)
-            each = 0.5 * np.broadcast_to(self._per_length(places), met.shape)[met] * length
-        else:
-            faces = places.faces(str(self.mesh))
-            index, part, _ = halves(faces[(faces >= 0).all(axis=1)])
-            a, b, c = (places.x[index[:, i]] for i in range(3))
-            each = self._per_area(places) * part * np.linalg.norm(np.cross(b - a, c - a), axis=1) / 6.0
-        weight = np.bincount(index.ravel(), np.repeat(each, index.shape[1]), len(places.x))
-        particles = np.unique(index)
-        return Block.of(particles[:, None], vector=weight[particles, None] * down)
+            length = np.linalg.norm(x[index[:, 1]] - x[index[:, 0]], axis=1)
+            return index, 0.5 * np.broadcast_to(self._per_length(places), met.shape)[met] * length
+        faces = places.faces(str(self.mesh))
+        index, part, _ = halves(faces[(faces >= 0).all(axis=1)])
+        a, b, c = (x[index[:, i]] for i in range(3))
+        return index, self._per_area(places) * part * np.linalg.norm(np.cross(b - a, c - a), axis=1) / 6.0
 
     def _gravity(self, places: Places) -> float:
         """Gravity [length/time^2] times the factor on the weight."""

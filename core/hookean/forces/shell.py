@@ -177,6 +177,9 @@ class Shell(Force):
     diagonal (a draw: first to third corner), which folds as any edge. Forces and moments of every triangle sum to zero,
     whatever its size.
 
+    A result reports the largest fold of each triangle's edges, and the larger of its two principal bending moments per
+    width, without its sign; with a thickness also the stress of bending at its faces, 6 M / t^2.
+
     The mesh may not have three faces at one edge; faces without area are left out. Sources: Morley, "The constant-
     moment plate-bending element", 1971; Grinspun et al., "Discrete shells", 2003; Grinspun et al., "Computing discrete
     shape operators on general meshes", 2006.
@@ -272,7 +275,8 @@ class Shell(Force):
         return planned, table, room
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
-        """Largest fold of each triangle's edges away from rest [rad], bending moment D |K| per width [force]."""
+        """Largest fold of each triangle's edges away from rest [rad], the larger of its two principal bending moments
+        per width, without its sign [force]."""
         parameters = block.parameters
         rest = parameters[:, FACTOR, None] * parameters[:, REST:BOUND]
         turn = wrapped(fold_angles(x, block.indices[:, HINGES]) - rest)
@@ -281,7 +285,12 @@ class Shell(Force):
         bent = np.einsum("mkh,mh->mk", each, turn)
         poisson = float(parameters[0, POISSON]) if len(parameters) else 0.0
         bent = bent @ root_of_stiffness(poisson)  # moments are D times what has the energy |bent|^2, times this again
-        moment = parameters[:, STRENGTH] * np.linalg.norm(bent, axis=1) / np.sqrt(parameters[:, AREA])
+        # by components xx, yy and sqrt(2) xy: the principal ones are half of their sum +- spread
+        mean, spread = (
+            0.5 * (bent[:, 0] + bent[:, 1]),
+            0.5 * np.hypot(bent[:, 0] - bent[:, 1], np.sqrt(2.0) * bent[:, 2]),
+        )
+        moment = parameters[:, STRENGTH] * (np.abs(mean) + spread) / np.sqrt(parameters[:, AREA])
         return {"angle": np.abs(turn[:, :3]).max(axis=1, initial=0.0), "moment": moment}
 
     @classmethod

@@ -100,14 +100,17 @@ class Pattern:
 
     def tangent(self, system: System, state: State, directions: Directions | None = None) -> Floats:
         """Values of the lower triangle of the sparse tangent stiffness; with `directions`, of what these make of it."""
-        values, elements = [np.zeros(0)], self.elements(system, state)
+        elements, end = self.elements(system, state), 0
+        values = np.empty(len(self.places))
         for (group, memory), take in zip(elements, self.takes, strict=True):
             if len(take):
                 blocks = system.stiffness_blocks(group, state, memory)
                 if directions is not None:
                     directions.put(group, blocks)
-                values.append(blocks.ravel()[take])
-        summed: Floats = np.bincount(self.places, np.concatenate(values), self.count).astype(np.float64)
+                # all are within: with clip they go straight to their place
+                np.take(blocks.ravel(), take, out=values[end : end + len(take)], mode="clip")
+                end += len(take)
+        summed: Floats = np.bincount(self.places, values, self.count).astype(np.float64)
         return summed
 
 

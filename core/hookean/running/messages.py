@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from hookean.forces.unary import Unary
 from hookean.running.result import Status
 from hookean.running.trial import trial
 from hookean.stability import time_steps
@@ -98,6 +99,11 @@ def _obstacle(watch: Watch, system: System) -> str:
             f"Forces balance, but one more exact step would still move a particle by {error:.2g} {unit}, more than "
             "position_tolerance allows: the structure is close to an instability. Stiffen it, or raise "
             "position_tolerance"
+        )
+    if any(np.any(force.moment) for force in system.scene.forces if isinstance(force, Unary)):
+        return (
+            "A moment keeps its direction and has no energy, so a shape that it bends far may not come to rest. "
+            'Hold particles in a plane, or use solver "newton" with allow_unstable'
         )
     return (
         "Common causes: springs at their cutoff, unsupported loads, a shape near snap-through. Check that "

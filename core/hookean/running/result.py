@@ -15,6 +15,7 @@ from hookean.forces import KINDS
 from hookean.forces.base import Rider
 from hookean.running.loads import applied
 from hookean.running.utilisation import NAME, STRESS, dimensions, stress, utilisation
+from hookean.scene.load_cases import asleep
 from hookean.scene.report import Report
 from hookean.scene.scene import Scene
 from hookean.stability.equilibrium import Equilibrium, Stability, unknown
@@ -117,6 +118,8 @@ class Result:
                 largest, together, unit = np.linalg.norm(rows, axis=1).max(), rows.sum(axis=0), self.units.force
                 total = ", ".join(f"{c:.4g}" for c in np.where(np.abs(together) > 1e-9 * largest, together, 0.0))
                 lines.append(f"{len(rows)} {title}: largest {largest:.4g} {unit}, together ({total}) {unit}")
+        if self.scene is not None and (idle := asleep(self.scene)):
+            lines.append(f"without {', '.join(idle)}, of load cases")
         return lines
 
     def _range(self, entry: dict[str, Any], column: str) -> str:

@@ -94,7 +94,13 @@ def relax_state(
     message = watch.sentence(system, status)
     if status is Status.CONVERGED and method.remark:
         message = f"{message} {method.remark}"
-    return gather(system, state, watch.found, watch.rest, status, message, name, moving=method.physical)
+    result = gather(system, state, watch.found, watch.rest, status, message, name, moving=method.physical)
+    beams = any(force.kind_name == "beam" for force in system.scene.forces)
+    if status is Status.CONVERGED and not method.physical and beams:
+        from hookean.running.between import bent_between  # other scenes need not load beams
+
+        result.report.warnings[:] = dict.fromkeys([*result.report.warnings, *bent_between(system, result)])
+    return result
 
 
 def _restore(state: State, good: State, *, memory: bool) -> None:

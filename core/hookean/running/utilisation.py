@@ -28,9 +28,15 @@ def dimensions(kind: str) -> dict[str, str]:
 
 def stress(force: Any, places: Places, columns: Mapping[str, Floats]) -> Floats | None:
     """Normal stress (m,) [force/length^2] of elements whose section is known: T / A of cables and bars; of beams the
-    largest size at either end, |N| / A + |My| / Wy + |Mz| / Wz, of round ones |N| / A + (My^2 + Mz^2)^0.5 / W."""
+    largest size at either end, |N| / A + |My| / Wy + |Mz| / Wz, of round ones |N| / A + (My^2 + Mz^2)^0.5 / W; of
+    shells of a known thickness that of bending at their faces, 6 M / t^2."""
     rule = STRESSES.get(force.kind_name)
-    return None if rule is None or force.section is None else rule(force, places, columns)
+    return None if rule is None or _size(force) is None else rule(force, places, columns)
+
+
+def _size(force: Any) -> Any:
+    """The section of a force, or the thickness of a shell; None where it is not known."""
+    return force.section if hasattr(force, "section") else force.thickness
 
 
 def utilisation(force: Any, places: Places, columns: Mapping[str, Floats]) -> Floats | None:
@@ -56,6 +62,8 @@ def missing(force: Any, columns: Mapping[str, Any]) -> str:
         return ""
     without = " and no ".join(column for column, _ in lacks)
     cause = " and ".join(cause for _, cause in lacks)
+    if force.kind_name == "shell":
+        cause = "material and thickness"
     if force.kind_name == "beam" and lacks[0][0] == STRESS:
         cause = "material and section" if force.section is None else "Wy or Wz of its section"
     return f"{force.name or force.kind_name} has no {without}: give its {cause}."
@@ -101,6 +109,10 @@ def _bent(force: Any, places: Places, columns: Mapping[str, Floats]) -> Floats |
     return np.asarray(np.abs(columns["force"]) / known["area"] + both.max(axis=0))
 
 
+def _plates(force: Any, places: Places, columns: Mapping[str, Floats]) -> Floats:
+    return np.asarray(6.0 * columns["moment"] / force.thickness**2)
+
+
 def _sheets(force: Any, places: Places, columns: Mapping[str, Floats]) -> Floats | None:
     if force.material is None:
         return None
@@ -126,5 +138,6 @@ STRESSES: dict[str, Callable[[Any, Places, Mapping[str, Floats]], Floats | None]
     "springs": _tensile,
     "sliding_cable": _tensile,
     "beam": _bent,
+    "shell": _plates,
 }
-"""The same of the stress of a section."""
+"""The same of the stress of a section, or of a thickness."""

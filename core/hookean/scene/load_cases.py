@@ -15,6 +15,7 @@ from hookean.values.fields import Field, Maybe, Named
 if TYPE_CHECKING:
     from hookean.scene.scene import Scene
 
+IDLE = "loads that do not act"  # the name of those of other cases in the scene of one
 PRESTRESS, PERMANENT = "prestress", "permanent"
 """Names in combinations: what the form is stressed by, and the loads that are in no case."""
 LINES = ("springs", "constant_tension")
@@ -114,6 +115,12 @@ def case_loads(scene: Scene) -> frozenset[int]:
     """The numbers of the loads that are in load cases."""
     names = (name for case in scene.load_cases.values() for name in case.forces)
     return frozenset(i for name in names for i in named(scene, name))
+
+
+def asleep(scene: Scene) -> list[str]:
+    """The names of the loads that are in load cases, which do not act by themselves, each once."""
+    found = (scene.forces[i] for i in sorted(case_loads(scene)))
+    return list(dict.fromkeys(force.name or force.kind_name for force in found if force.name != IDLE))
 
 
 def check(scene: Scene) -> None:

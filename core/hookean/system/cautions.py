@@ -43,9 +43,11 @@ def _rests(block: Block) -> Floats:
 
 
 def cautions(system: System) -> list[str]:
-    """Warnings before a run: springs of zero length, loads on unsupported particles, rotations held of particles that
-    have none."""
-    warnings: list[str] = []
+    """Warnings before a run: materials in other units, springs of zero length, loads on unsupported particles,
+    rotations held of particles that have none."""
+    materials = system.scene.materials.items()
+    doubts = {f"{name}/{of}": said for name, one in materials for of, said in one.doubts(system.scene.units).items()}
+    warnings = [f"/materials/{place}: {said}" for place, said in doubts.items()]
     touched = np.zeros(len(system.x), dtype=np.int8)
     for group in system.groups:
         if group.cls.role == "load":

@@ -14,6 +14,7 @@ from hookean.values.units import METRES, NEWTONS, SECONDS, Units
 
 CLOTH = ("warp_stiffness", "weft_stiffness", "shear_stiffness", "warp_strength", "weft_strength", "area_density")
 SOLID = ("E", "G", "density", "strength")
+STIFFEST, HEAVIEST = 2e12, 25e3  # above diamond [N/m^2] and osmium [kg/m^3]: no material is
 
 
 class Material(Model):
@@ -90,6 +91,25 @@ class Material(Model):
         found = self.modulus(name) / (2.0 * self.G) - 1.0
         if not -1.0 < found <= 0.5:
             raise InputError("", f"{name} is not isotropic: E / 2G - 1 is {found:.3g}; give Poisson's ratio")
+        return found
+
+    def doubts(self, units: Units) -> dict[str, str]:
+        """Sentences, by the field, on a modulus or a density that no material has: its unit is another one."""
+        metre, newton = METRES[units.length], NEWTONS[units.force]
+        mass = newton * SECONDS[units.time] ** 2 / metre  # [kg]
+        found = {}
+        if self.E is not None and self.E * newton / metre**2 > STIFFEST:
+            pressure = f"{units.force}/{units.length}^2"
+            found["E"] = (
+                f"{self.E:g} given, which is {self.E * newton / metre**2:.3g} N/m^2, more than any material has; give "
+                f"it in {pressure}"
+            )
+        if self.density is not None and self.density * mass / metre**3 > HEAVIEST:
+            found["density"] = (
+                f"{self.density:g} given, which is {self.density * mass / metre**3:.3g} kg/m^3, more than any material "
+                f"has; give it per {units.length}^3 in units of {mass:g} kg, as {units.force}, {units.length} and "
+                f"{units.time} make it"
+            )
         return found
 
     def mass_density(self, name: str) -> float:

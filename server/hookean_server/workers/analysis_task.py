@@ -32,16 +32,27 @@ class Modes(Model):
     count: int = Field(default=6, ge=1, le=200, description="How many modes")
 
 
+class Frequencies(Modes):
+    """How many modes, of which masses."""
+
+    masses: float | tuple[float, ...] | Literal["self_weight"] | None = Field(
+        default=None,
+        description="Mass of all or of each particle [mass], or that of its self_weight; null: those of the scene",
+    )
+
+
 class Buckling(Modes):
     """How many factors, and which loads grow."""
 
     loads: tuple[str, ...] | None = Field(default=None, description="Names of the loads that grow; null: all")
+    case: str | None = Field(default=None, description="Load case or combination whose loads these are; null: none")
 
 
 class LoadPath(Model):
     """Which loads change, and how far."""
 
     loads: tuple[str, ...] | None = Field(default=None, description="Names of the loads that change; null: all")
+    case: str | None = Field(default=None, description="Load case or combination whose loads these are; null: none")
     steps: int = Field(default=50, ge=1, le=1000, description="Points of the path at most")
     increment: float = Field(default=0.1, description="Load factor of the first step [-]")
     largest_factor: float | None = Field(default=None, description="End at this load factor [-]; null: after all steps")
@@ -90,7 +101,9 @@ class Analysis:
 
 
 ANALYSES: dict[str, Analysis] = {
-    "frequencies": Analysis(hookean.frequencies, Modes, ("frequencies", "modes", "effective_masses", "units")),
+    "frequencies": Analysis(
+        hookean.frequencies, Frequencies, ("frequencies", "modes", "effective_masses", "units", "notes")
+    ),
     "buckling": Analysis(hookean.buckling, Buckling, ("factors", "modes", "particles", "loads", "units")),
     "load-path": Analysis(hookean.load_path, LoadPath, ("factors", "particles", "stable", "critical_points", "units")),
     "mechanisms": Analysis(

@@ -15,8 +15,9 @@ from hookean.files.exchange.structure import Structure
 
 def document(structure: Structure, name: str = "") -> dict[str, Any]:
     """A Graph document. Nodes have `is_support`, `fixed` (axes), `clamped` (rotations about axes), loads `px py pz` and
-    their moments `mx my mz`, reactions `rx ry rz` and their moments `rmx rmy rmz`, and displacements `dx dy dz`; edges
-    `force_name`, `kind`, `axial_stiffness` and the columns of their force; the graph has `units`. Of several elements
+    their moments `mx my mz`, reactions `rx ry rz` and their moments `rmx rmy rmz`, the stiffness of elastic supports
+    `kx ky kz` and about axes `kmx kmy kmz`, and displacements `dx dy dz`; edges `force_name`, `kind`, `material` and
+    `section` by name, `axial_stiffness` and the columns of their force; the graph has `units`. Of several elements
     between two particles the first is an edge."""
     _, first = np.unique(np.sort(structure.pairs, axis=1), axis=0, return_index=True)
     order = np.sort(first)
@@ -24,11 +25,18 @@ def document(structure: Structure, name: str = "") -> dict[str, Any]:
     data = made["data"]
     for number, node in enumerate(data["node"].values()):
         held, clamped = (_axes(of[number]) for of in (structure.held, structure.clamped))
+        along, about = np.split(structure.elastic[number], 2)
         if held:
             node.update(is_support=True, fixed=held)
-            node.update(zip(("rx", "ry", "rz"), structure.reactions[number].tolist(), strict=True))
         if clamped:
             node.update(is_support=True, clamped=clamped)
+        if along.any():
+            node.update(zip(("kx", "ky", "kz"), along.tolist(), strict=True))
+        if about.any():
+            node.update(zip(("kmx", "kmy", "kmz"), about.tolist(), strict=True))
+        if held or along.any():
+            node.update(zip(("rx", "ry", "rz"), structure.reactions[number].tolist(), strict=True))
+        if clamped or about.any():
             node.update(zip(("rmx", "rmy", "rmz"), structure.reaction_moments[number].tolist(), strict=True))
         if structure.loads[number].any():
             node.update(zip(("px", "py", "pz"), structure.loads[number].tolist(), strict=True))
@@ -41,6 +49,7 @@ def document(structure: Structure, name: str = "") -> dict[str, Any]:
             if start + row in wanted:
                 edge = data["edge"][str(a)][str(b)]
                 edge.update(force_name=group.name, kind=group.kind)
+                edge.update({n: of for n, of in zip(("material", "section"), group.made_of, strict=True) if of})
                 edge.update({column: float(values[row]) for column, values in group.columns.items()})
                 if group.axial_stiffness[row] > 0.0:
                     edge["axial_stiffness"] = float(group.axial_stiffness[row])

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from hookean.atomic_write import put
 from hookean.errors import InputError
 from hookean.files.exchange.beams import Beams
+from hookean.files.exchange.ifc_sections import Made
 from hookean.files.exchange.structure import Structure
 from hookean.files.optional import needed
 
@@ -24,9 +25,9 @@ FORCES = {"N": None, "kN": "KILO", "MN": "MEGA"}
 
 def write(structure: Structure, target: Path) -> None:
     """Write an IFC4 structural analysis model: a curve member for each line element, named after its force, with its
-    numbers in a property set, beams rigidly joined but for their releases, with their eccentric ends; a point
-    connection for each particle, held ones with their fixed axes and rotations, or the stiffness of elastic supports,
-    and reaction; a point action for each load.
+    numbers in a property set, its material and profile, beams rigidly joined but for their releases, with their
+    eccentric ends; a point connection for each particle, held ones with their fixed axes and rotations, or the
+    stiffness of elastic supports, and reaction; a point action for each load.
 
     Raises InputError for units that IFC's SI units do not have.
     """
@@ -117,7 +118,7 @@ class _Writer:
         return made
 
     def _members(self, context: Any, vertices: list[Any], connections: list[Any]) -> list[Any]:
-        members, beams = [], iter(self.structure.beams)
+        members, beams, made = [], iter(self.structure.beams), Made(self.structure, self.file.create_entity)
         up = self.file.create_entity("IfcDirection", DirectionRatios=(0.0, 0.0, 1.0))
         side = self.file.create_entity("IfcDirection", DirectionRatios=(1.0, 0.0, 0.0))
         for group in self.structure.lines:
@@ -145,6 +146,9 @@ class _Writer:
                     },
                 )
                 members.append(member)
+            if len(group.pairs) and (of := made.of(group)) is not None:
+                own = members[-len(group.pairs) :]
+                self.root("IfcRelAssociatesMaterial", "", RelatedObjects=own, RelatingMaterial=of)
         return members
 
     def _join(self, joint: dict[str, Any], beams: Beams | None, row: int, end: int, vertex: Any) -> None:

@@ -21,6 +21,7 @@ from hookean.running.result import Result
 from hookean.running.utilisation import NAME, dimensions
 from hookean.system.system import System, compile
 from hookean.values.materials import Material
+from hookean.values.sections import Section
 from hookean.values.units import Units
 
 Floats = NDArray[np.float64]
@@ -32,7 +33,8 @@ class Lines:
     """The elements of one force along lines: `pairs` (m, 2) of particles, `columns` of numbers (m,) by name, with the
     `dimensions` of these, and of springs `axial_stiffness` EA (m,) [force] and `rest_length` (m,) [length], 0 where
     an element has none; `one_way`: whether they go slack, `compression` or `tension` or, beyond a length, `other`;
-    `area` [length^2] of the section and the name of the `material`, where they are known."""
+    `area` [length^2] of the section and the name of the `material`, where they are known; `made_of`, the names of
+    material and section that the force is given by, empty for none."""
 
     name: str
     kind: str
@@ -44,6 +46,7 @@ class Lines:
     one_way: str
     area: float | None = None
     material: str | None = None
+    made_of: tuple[str, str] = ("", "")
 
     @property
     def force(self) -> Floats:
@@ -59,7 +62,7 @@ class Structure:
     about axes [force/length, force length]; `faces` (m, 4) of meshes by name, in particles; `beams` of each force that
     has some; `others` are the names of forces between particles that are neither; `cloth` has the stresses of membranes
     by the name of their mesh, of each of its faces (see `_cloth`); `sheets` are membranes with their shells,
-    `materials` those that are used."""
+    `materials` those that are used, and `sections`; `touching` is how many particles lie on floors."""
 
     points: Floats
     displacements: Floats
@@ -78,6 +81,8 @@ class Structure:
     cloth: dict[str, dict[str, Floats]] = field(default_factory=dict)
     sheets: tuple[Sheet, ...] = ()
     materials: dict[str, Material] = field(default_factory=dict)
+    sections: dict[str, Section] = field(default_factory=dict)
+    touching: int = 0
 
     @classmethod
     def of(cls, result: Result, system: System | None = None) -> Structure:
@@ -122,7 +127,14 @@ class Structure:
             _cloth(system, result),
             tuple(cloth),
             {name: system.places.material(name) for name in sorted(filter(None, used))},
+            {name: system.places.section(name) for name in sorted(filter(None, (line.made_of[1] for line in lines)))},
+            len(result.contacts["particles"]),
         )
+
+    @property
+    def supported(self) -> Ints:
+        """Particles that are held, or that an elastic support carries."""
+        return np.flatnonzero((self.held | self.clamped).any(axis=1) | self.elastic.any(axis=1))
 
     @property
     def start(self) -> Floats:
@@ -149,7 +161,8 @@ def _lines(system: System, result: Result) -> list[Lines]:
         section, material = getattr(force, "section", None), getattr(force, "material", None)
         area = elastic.area(force, system.places) if section is not None and number in axial else None
         made = material if area is not None else None
-        found.append(Lines(name, force.kind_name, pairs, columns, known, stiffness, rest, free, area, made))
+        of = (material or "", section or "")
+        found.append(Lines(name, force.kind_name, pairs, columns, known, stiffness, rest, free, area, made, of))
     return found
 
 

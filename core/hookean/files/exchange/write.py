@@ -38,7 +38,11 @@ def exchange(result: Result, target: Path, system: System | None = None) -> list
     import_module(f"hookean.files.exchange.{EXCHANGED[ending]}").write(structure, target)
     said = [f"A {ending} file stores the shape, its lines and results, not the model; save the scene, too."]
     if ending == ".inp":
-        said += _left(structure)
+        return said + _left(structure)
+    if structure.touching:
+        said.append(f"The forces of floors on {structure.touching} particles are not in the file.")
+    if ending in (".ifc", ".compas.json") and structure.cloth:
+        said.append(f"Membranes on {', '.join(structure.cloth)}: not in the file, which has lines alone.")
     return said
 
 
@@ -48,6 +52,8 @@ def _left(structure: Structure) -> list[str]:
     left = [*without, *structure.others]
     has = "beams, membranes, lines with an axial stiffness, and elastic supports"
     said = [f"{', '.join(left)}: not in the file, which has {has}."] if left else []
+    if structure.elastic.any():
+        said.append("Elastic supports are SPRING1, with which meshio does not read the file.")
     slack = [g.name for g in structure.lines if g.one_way == "other" and (g.axial_stiffness > 0.0).any()]
     said += [f"{', '.join(slack)}: trusses without their cutoffs."] if slack else []
     parts = [(part.name, part.left) for part in structure.beams] + [(part.name, part.left) for part in structure.sheets]
