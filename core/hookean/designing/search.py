@@ -183,8 +183,8 @@ class Search:
 
     def _called(self, number: int) -> str:
         """The variable of an unknown."""
-        parts = zip(self.unknowns.variables, self.unknowns.slices, strict=True)
-        return next(v.variable.title for v, part in parts if part.start <= number < part.stop)
+        parts = zip(self.unknowns.names, self.unknowns.slices, strict=True)
+        return next(name for name, part in parts if part.start <= number < part.stop)
 
     def _endless(self, y: Floats) -> str:
         """Which variable has left all sizes, as a sentence."""

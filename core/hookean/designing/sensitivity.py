@@ -84,7 +84,7 @@ def sensitivity(problem: Any, goals: Any = None, variables: Any = None) -> Sensi
         said += _along(found, _summed(found, unknowns, quantities, weights)[0])
     if unknowns.clipped:
         said.append(f"{unknowns.clipped} values of the scene are beyond the bounds; the shape has them at the bounds")
-    return Sensitivity(float(total), parts, values, [v.title for v in problem.variables], said, found.result)
+    return Sensitivity(float(total), parts, values, unknowns.names, said, found.result)
 
 
 def gradients(
