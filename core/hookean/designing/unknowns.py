@@ -18,6 +18,7 @@ from hookean.errors import InputError
 from hookean.forces.base import Force
 from hookean.running.patch import lead_forces, named
 from hookean.scene.scene import Scene
+from hookean.system.addressed import numbered
 from hookean.system.state import State
 from hookean.system.system import Held, System, hold
 
@@ -75,6 +76,9 @@ class Unknowns:
 
     def __init__(self, problem: Problem, system: System) -> None:
         self.problem = problem
+        weighed = [int(v.particles.max()) for v in problem.variables if v.field == "mass" and len(v.particles)]
+        if max(weighed, default=-1) >= len(system.scene.particles):  # of points of forces no scene has masses
+            system.scene = numbered(system, system.scene)
         self.variables: list[Column | Moved | Drawn | Mass] = []
         for i, variable in enumerate(problem.variables):
             self.variables.append(_kind(variable)(variable, system, f"/variables/{i}"))
