@@ -54,6 +54,25 @@ def test_what_is_wrong_is_one_sentence(parts: dict[str, Any], pointer: str, sent
     assert "more fault" not in refused.value.sentence
 
 
+def test_faults_of_the_scene_have_their_place_in_the_problem() -> None:
+    """Faults of its fields and those that compiling finds, with particles given by number and by place."""
+    near = {"kind": "position", "points": [[0, 0, -0.2]], "axes": "z", "target": -0.4}
+    faults: list[tuple[dict[str, Any], str]] = [
+        ({"colour": 1}, "/scene/colour"),
+        ({"particles": None}, "/scene/particles"),
+    ]
+    odd = {"kind": "springs", "particles": [[0, 1, 2]]}
+    faults.append(({"forces": [*problem()["scene"]["forces"], odd]}, "/scene/forces/2/particles"))
+    for goal in (GOAL, near):
+        for changed, pointer in faults:
+            given = problem(goals=[goal])
+            given["scene"] |= changed
+            for ask in (hookean.design, hookean.sensitivity):
+                with pytest.raises(InputError) as refused:
+                    ask(given)
+                assert refused.value.pointer == pointer
+
+
 def test_two_variables_of_one_column_have_names_of_their_own() -> None:
     """Elements in two variables: in the answer, its gains and derivatives each has its name."""
     parts = [{**VARIABLE, "tie": [[0, 1]], "upper": 1.1}, {**VARIABLE, "tie": [[2]], "upper": 1.05}]
