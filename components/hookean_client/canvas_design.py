@@ -21,6 +21,7 @@ from .canvas_geometry import Unfit, listed
 
 LOOK = 120  # milliseconds to the next look at a search that runs
 METHODS = ("auto", "least_squares", "levenberg_marquardt", "l-bfgs-b", "slsqp", "augmented_lagrangian")
+NOWHERE = ("stalled", "unbounded")  # ends from whose values no search goes on well
 _searches = {}  # by component in an open document
 
 
@@ -48,10 +49,12 @@ class Search(canvas_sweep.Sweep):
     """A search as the canvas wants it, its job, and its last answer, of whatever goals."""
 
     answer = best = None  # the last answer; the values it has and what they are values of
+    led = False  # whether the search began at such values
 
     def _submit(self, client, wanted):
         problem = wanted.problem
-        if self.best is not None and self.best[0] == wanted.unknowns:
+        self.led = self.best is not None and self.best[0] == wanted.unknowns
+        if self.led:
             problem = dict(problem, start=self.best[1])
         body = text(problem).encode("ascii")
         key = hashlib.sha1(VERSION.encode("ascii") + body).hexdigest() + self._again
@@ -78,9 +81,14 @@ class Search(canvas_sweep.Sweep):
             return
         if "variables" not in answer:
             return
+        if answer["status"] in NOWHERE:
+            self.best = None
+            if self.led:  # once more, from the values of the scene
+                self.job = None
+                return
         self.answer = answer
         values = [one for entry in answer["variables"] for one in _flat(entry["value"])]
-        if wanted is not None and wanted.signature == self.signature:
+        if wanted is not None and wanted.signature == self.signature and answer["status"] not in NOWHERE:
             self.best = (wanted.unknowns, values)
 
 
@@ -127,6 +135,9 @@ def _wanted(ghenv, forces, anchors, settings, rides, variables, goals, constrain
     for name, value in (("variables", variables), ("goals", goals), ("constraints", constraints)):
         what = name[:-1]
         entries = [one[what] for one in compose.read(listed(value), what, name)]
+        for entry in entries:  # what is measured from a mesh needs it in the scene, where it stays as drawn
+            if "mesh_drawn" in entry:
+                scene["meshes"].setdefault(entry["mesh"], entry.pop("mesh_drawn"))
         problem[name] = [_placed(entry, given, what) for entry in entries]
     if not problem["variables"]:
         raise missing("_variables is missing; connect the output of Variables")

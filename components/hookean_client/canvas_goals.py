@@ -8,7 +8,7 @@ from .canvas_geometry import TEXT, Unfit, listed, missing
 from .canvas_items import plain, text
 from .canvas_packed import packed
 from .canvas_scene import read
-from .canvas_values import word
+from .canvas_values import flag, word
 
 KINDS = (
     "position",
@@ -25,7 +25,11 @@ KINDS = (
     "offset",
     "strain_energy",
     "frequency",
+    "direction",
+    "curvature",
+    "buckling_factor",
 )
+ALONE = ("frequency", "buckling_factor")  # measured of all that there is
 AXES = ("x", "y", "z", "xy", "xz", "yz", "xyz")
 PARTICLES = ("drawn", "mass")  # fields of particles at points
 TIES = ("each", "all")
@@ -79,12 +83,12 @@ def _measured(what, kind, places, given, limits):
     """Entries of one quantity: at points, of forces, of anchors or of meshes."""
     if not listed(kind):
         raise missing("_kind is missing; give one of %s" % ", ".join(KINDS))
-    kind = word(kind, KINDS, "kind") if str(listed(kind)[0]).strip() in KINDS + _numbers() else _text(kind)
+    kind = _kind(kind)
     own = {"kind": kind}
     own.update(_some(axes=_axes(given.get("axes")), column=_text(given.get("column")) or None))
-    for flag in ("equal", "total", "size"):
-        if listed(given.get(flag)) and flag(given[flag], False):
-            own[flag] = True
+    for switch in ("equal", "total", "size"):
+        if flag(given.get(switch), False):
+            own[switch] = True
     elements = [int(geometry.number(item)) for item in listed(given.get("elements"))]
     if elements:
         own["elements"] = elements
@@ -92,20 +96,33 @@ def _measured(what, kind, places, given, limits):
         own.update(_some(**{limit: _values(given[limit], limit)}))
     if _text(given.get("name")):
         own["name"] = _text(given["name"])
-    points, forces, anchors, meshes = places
+    return [_item(what, dict(own, **owner)) for owner in _owners(kind, *places)]
+
+
+def _owners(kind, points, forces, anchors, meshes):
+    """Of what a quantity is measured, an entry each: all points together, of offsets beside each mesh."""
+    at, drawn = geometry.points(points), [geometry.mesh(item) for item in listed(meshes)]
+    named = [{"mesh": mesh_name(one)} for one in drawn]
+    if kind == "offset":
+        if not at or not named:
+            raise missing("connect points and meshes; an offset is the distance of points from a mesh")
+        return [dict(mesh, points=at, mesh_drawn=packed(one)) for mesh, one in zip(named, drawn)]
     owners = [{"force": _name(item)} for item in listed(forces)]
     owners += [{"anchor_at": place} for place in geometry.points(anchors)]
-    owners += [{"mesh": mesh_name(geometry.mesh(item))} for item in listed(meshes)]
-    at = geometry.points(points)
+    owners += named
     if at:
         owners.append({"points": at})
-    if not owners:
+    if not owners and kind not in ALONE:
         raise missing("connect points, names of forces, anchors or meshes of which %s is measured" % kind)
-    return [_item(what, dict(own, **owner)) for owner in owners]
+    return owners or [{}]
 
 
-def _numbers():
-    return tuple(str(i) for i in range(len(KINDS)))
+def _kind(given):
+    """A kind by its name or number; other names are those of later versions of the service."""
+    item, name = listed(given)[0], _text(given).lower()
+    if isinstance(item, geometry.NUMBERS) or name.isdigit():
+        return word([item], KINDS, "kind")
+    return name
 
 
 def mesh_name(plain):
@@ -151,12 +168,14 @@ def _name(item):
 def _axes(given):
     found = _text(given).lower()
     if found and found not in AXES:
-        raise Unfit("axes: unknown %s; known: %s" % (geometry.called(found), ", ".join(AXES)))
+        raise Unfit("axes: %s is unknown; known: %s" % (geometry.called(found), ", ".join(AXES)))
     return found or None
 
 
 def _number(given, name):
     items = listed(given)
+    if len(items) > 1:
+        raise Unfit("%s: %d numbers given; give one, and other variables their own component" % (name, len(items)))
     try:
         return geometry.number(items[0]) if items else None
     except Unfit as unfit:

@@ -9,10 +9,12 @@ import pytest
 
 import hookean
 from canvas.canvasing import Bench, line, point, sentences, xyz
-from canvas.test_tools import Placed, branches
+from canvas.test_tools import SQUARE, Placed, as_mesh, branches
 from canvas.test_tools_sweep import tree
+from hookean.designing.quantities import QUANTITIES
+from hookean_canvas.components import bundles
 from hookean_canvas.run import stand_in
-from hookean_client import canvas_design
+from hookean_client import canvas_design, canvas_goals
 from serving import Home
 
 pytestmark = pytest.mark.usefixtures("canvas")
@@ -82,12 +84,63 @@ def test_a_thrust_is_held_by_a_constraint_at_an_anchor(home: Home) -> None:
     assert thrust <= 150.0 * (1 + 1e-6)
 
 
+@pytest.mark.slow
+def test_a_search_goes_on_from_no_values_that_led_nowhere(home: Home) -> None:
+    """A load without bounds for a sag of 1e9 m, then of 1.7 m: found as if there had been no search before."""
+    bench = Bench()
+    placed, given = Placed("Design", bench), cable(bench)
+    given["_variables"] = variables(bench, _force=["UForce"], _field=["vector"], _axes_=["z"], lower_=[], upper_=[])
+    assert placed.run(**given, _goals=sag(bench, 1e9))["status"] == "unbounded"
+    found = placed.run(**given, _goals=sag(bench, 1.7))
+    assert found["status"] == "converged" and not placed.ghenv.Component.messages
+    assert branches(found["goals"])["{0}"] == pytest.approx([-1.7], abs=1e-6)
+
+
+def test_switches_and_kinds_are_those_of_the_core() -> None:
+    """True, false and words at the switches; quantities of the whole model, and offsets of points from a mesh."""
+    bench, at = Bench(), [point(5, 0, 0)]
+
+    def goal(**inputs: Any) -> dict[str, Any]:
+        [text] = Placed("Goals", bench).run(**inputs)["goals"]
+        return json.loads(text)["goal"]
+
+    for given, wanted in ((True, {"equal": True}), ("yes", {"equal": True}), (False, {}), ("0", {})):
+        assert (
+            goal(_kind=["force"], forces_=["Springs"], equal_=[given]) == {"kind": "force", "force": "Springs"} | wanted
+        )
+    whole = goal(_kind=["Reaction"], anchors_=at, total_=[True], size_=[True])
+    assert whole == {"kind": "reaction", "anchor_at": [5, 0, 0], "total": True, "size": True}
+    for kind in ("frequency", "buckling_factor"):
+        assert goal(_kind=[kind], target_=[3.0]) == {"kind": kind, "target": 3.0}
+    offset = goal(_kind=["offset"], points_=at, meshes_=[as_mesh(SQUARE)], target_=[0.0])
+    assert (
+        offset["points"] == [[5, 0, 0]]
+        and offset["mesh"].startswith("mesh-")
+        and offset["mesh_drawn"]["faces"]["shape"] == [1, 4]
+    )
+    assert goal(_kind=[1], forces_=["Springs"])["kind"] == goal(_kind=["1"], forces_=["Springs"])["kind"] == "length"
+
+
+def test_every_kind_of_the_core_is_listed_at_the_input() -> None:
+    for name in ("Goals", "Constraints"):
+        [kind] = [one for one in bundles.read(name).inputs if one.name == "_kind"]
+        listed = kind.description.removeprefix("What is measured: ").removesuffix(".").split(", ")
+        assert set(listed) == set(QUANTITIES) == set(canvas_goals.KINDS)
+
+
 @pytest.mark.parametrize(
     ("component", "inputs", "sentence"),
     [
         ("Variables", {}, "_force is missing"),
         ("Variables", {"_force": ["Springs"]}, "_field is missing"),
         ("Variables", {"_force": ["Springs"], "anchors_": [(0, 0, 0)]}, "connect one of them"),
+        (
+            "Variables",
+            {"_force": ["Springs"], "_field": ["stiffness"], "lower_": [1.0, 2.0]},
+            "2 numbers given; give one",
+        ),
+        ("Goals", {"_kind": ["offset"], "anchors_": [(0, 0, 0)]}, "connect points and meshes"),
+        ("Goals", {"_kind": ["99"], "forces_": ["Springs"]}, "give one of 0 position"),
         ("Variables", {"_force": ["Springs"], "_field": ["stiffness"], "_axes_": ["w"]}, "unknown"),
         ("Goals", {}, "_kind is missing"),
         ("Goals", {"_kind": ["length"]}, "connect points, names of forces"),

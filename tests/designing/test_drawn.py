@@ -163,6 +163,23 @@ def test_a_frequency_by_the_mass() -> None:
     assert found.scene.masses[1] == pytest.approx(10.0, rel=1e-6)
 
 
+def test_the_mass_of_particles_that_only_forces_name() -> None:
+    """A particle between two springs that give coordinates: m = 4 k / (2 pi f)², of the scene found as well, and
+    beside a drawn position."""
+    springs = {"kind": "springs", "lines": [[[0, 0, 0], [1, 0, 0]], [[1, 0, 0], [2, 0, 0]]], "stiffness": 3.0}
+    scene = {"forces": [{**springs, "rest_length": 0.5}], "anchors": [{"points": [[0, 0, 0], [2, 0, 0]]}]}
+    middle = {"points": [[1, 0, 0]], "field": "mass"}
+    goal = {"kind": "frequency", "mode": 2, "target": 0.25}
+    drawn = {"points": [[0, 0, 0]], "field": "drawn", "axes": "x", "lower": 0.0, "upper": 0.0}
+    for variables in ([middle], [middle, drawn], [drawn, middle]):
+        found = design({"scene": scene, "variables": variables, "goals": [goal]})
+        mass = next(np.ravel(v["value"]) for v in found.variables if v["name"] == "mass")
+        assert found.status == "converged" and mass == pytest.approx([2.0 * 3.0 / (0.5 * np.pi) ** 2], rel=1e-6)
+        assert hookean.frequencies(found.scene, 3).frequencies[2] == pytest.approx(0.25, rel=1e-6)
+    with pytest.raises(InputError, match="particle 3 does not exist; there are 3, from 0"):
+        design({"scene": scene, "variables": [{"particles": [3], "field": "mass"}], "goals": [goal]})
+
+
 def test_particles_that_vary_are_checked() -> None:
     """Each fault with its place: fields, numbers, films, and what stands beside particles."""
     goal = [{"kind": "position", "particles": [1], "axes": "z"}]

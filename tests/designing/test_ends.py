@@ -178,7 +178,7 @@ def test_a_tie_over_different_values_is_reported() -> None:
     assert answer.warnings == found.warnings
     driven = {**REST, "drives": [{"force": "string", "field": "stiffness", "factor": 50}]}
     said = design(even, [driven], [{**PLACE, "target": -0.5}]).warnings
-    assert said == ["string.stiffness: values from 80 to 80 in the scene are not kept; it follows its variable"]
+    assert said == ["string.stiffness: the value 80 in the scene is not kept; it follows its variable"]
 
 
 @pytest.mark.parametrize("part", ["goals", "constraints"])

@@ -65,10 +65,6 @@ class Mass:
     def __init__(self, variable: Variable, system: System, pointer: str) -> None:
         self.variable, self.pointer = variable, pointer
         self.particles = _particles(variable, system, pointer)
-        given = system.scene.masses
-        if isinstance(given, np.ndarray) and self.particles.max() >= len(given):
-            said = f"particle {self.particles.max()} has no mass of its own; the scene gives {len(given)} masses"
-            raise InputError(f"{pointer}/particles", said)
         values = system.mass[self.particles][:, None]
         self.entries = Entries(values, tied(variable, len(values), np.array([0]), 1, pointer))
         self.shape = shape_of(1, self.entries.count, False)
@@ -78,9 +74,6 @@ class Mass:
         """Give the particles these masses."""
         scene, own = system.scene, self.entries.with_values(values)[:, 0]
         masses = np.broadcast_to(scene.masses, len(scene.particles)).astype(np.float64)
-        if self.particles.max() >= len(masses):
-            said = "particles made of coordinates have the mass 1; give the scene these particles to vary their masses"
-            raise InputError(f"{self.pointer}/particles", said)
         masses[self.particles] = own
         system.mass[self.particles] = own
         system.mass[system.slots.first] = system.mass[system.slots.particles]

@@ -31,7 +31,7 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 TIGHT = 1e-11  # residual [-] to which shapes are brought
-NEAR = 1e-8  # residual [-] from which exact steps are tried first
+NEAR = 1e-6, 1e-8  # residuals [-] from which exact steps are tried first
 SOFTER = 1e-6  # part of the stiffness by which yielding differs from rounding
 SLIGHT = 1e-8  # part of the model's size: a step after which the tangent is the same
 NOTHING = 1e-15  # part of the diagonal: entries of the tangent that are rounding
@@ -225,7 +225,7 @@ def settle(system: System, state: State, orders: Orders | None = None, *, once: 
     """Bring a state to rest with the scene's solver, and to the last digit by exact steps; `once`: see Equilibrium,
     and such steps begin earlier if they lead there."""
     before = [memory.copy() for memory in state.memory]
-    for residual in (NEAR, TIGHT) if once else (TIGHT,):
+    for residual in (*NEAR, TIGHT) if once else (TIGHT,):
         result, method = _relaxed(system, state, residual)
         found = Equilibrium(system, state, result, orders, once=once, method=method)
         found, part = _polished(found)

@@ -1,4 +1,5 @@
-"""Particles of variables, goals and constraints that are named by the points where they are drawn."""
+"""The scene of a problem as a system, and particles of variables, goals and constraints that are named by the points
+where they are drawn."""
 
 from __future__ import annotations
 
@@ -7,9 +8,19 @@ from typing import Any
 
 import numpy as np
 
-from hookean.errors import InputError
+from hookean.errors import InputError, several
 from hookean.scene.scene import Scene
 from hookean.system.system import System, compile
+
+
+def system_of(scene: Any) -> System:
+    """A problem's scene (a Scene, or a dict or text of one) as a system; faults have their places in the problem."""
+    try:
+        return compile(Scene.read(scene))
+    except InputError as error:
+        raise several(
+            [InputError(f"/scene{fault.pointer}".rstrip("/"), fault.sentence) for fault in error.faults]
+        ) from None
 
 
 def located(problem: Any) -> Any:
@@ -20,7 +31,7 @@ def located(problem: Any) -> Any:
     named = [name for name in ("variables", "goals", "constraints") if _any(problem.get(name))]
     if not named:
         return problem
-    system = compile(Scene.read(problem["scene"]))
+    system = system_of(problem["scene"])
     found = {**problem, "scene": system.scene}
     for name in named:
         found[name] = [_put(system, entry, f"/{name}/{i}") for i, entry in enumerate(problem[name])]

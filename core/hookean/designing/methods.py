@@ -52,8 +52,8 @@ def _least_squares(search: Search) -> Ended:
     start = np.clip(np.zeros(search.unknowns.count), lower, upper)
     least = max(search.met, 0.0)
     size, taken = max(float(np.linalg.norm(search.residuals(start))), np.sqrt(least)) or 1.0, 0
-    tight = max(settings.tolerance * 1e-3, ROUNDING)
-    for ftol, most in ((settings.tolerance, SLOW), (settings.tolerance, SLOW), (tight, settings.max_iterations)):
+    wanted, tight = (max(part * settings.tolerance, ROUNDING) for part in (1.0, 1e-3))
+    for ftol, most in ((wanted, SLOW), (wanted, SLOW), (tight, settings.max_iterations)):
         most = min(most, settings.max_iterations - taken)
         used, status = _trust_region(search, start, (lower, upper), size, most, ftol)
         taken += used
@@ -83,7 +83,7 @@ def _trust_region(
         found = least_squares(
             lambda z: search.residuals(z - off) / size, start + off, lambda z: search.slopes(z - off) / size,
             bounds=(lower + off, upper + off), method="trf",
-            ftol=ftol, xtol=settings.tolerance, gtol=FLAT,
+            ftol=ftol, xtol=max(settings.tolerance, ROUNDING), gtol=FLAT,
             max_nfev=max(most, 1),
         )  # fmt: skip
     return int(found.njev if found.status else found.nfev), int(found.status)

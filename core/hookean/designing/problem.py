@@ -12,7 +12,7 @@ It is the same in Python, JSON and TOML.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Annotated, Any, Literal, Self
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import StrictInt, StrictStr, model_validator
@@ -42,6 +42,12 @@ class Drive(Model):
     force: StrictStr | StrictInt = Field(description="Name or number of a force")
     field: str = Field(description="Column of the force")
     factor: float = Field(default=1.0, description="Factor on the value [unit of the column by that of the variable]")
+
+    @model_validator(mode="after")
+    def _some_factor(self) -> Self:
+        if self.factor == 0.0:
+            raise fault("0 given; give a factor that is not 0, or leave the column out", "/factor")
+        return self
 
 
 class Variable(Model):
@@ -84,6 +90,8 @@ class Variable(Model):
             raise fault("an anchor has no field that varies; give axes", "/field")
         if self.anchor is not None and self.drives:
             raise fault("an anchor drives no columns", "/drives")
+        if not len(self.tie):
+            raise fault("an empty list given; give lists of elements, or each or all", "/tie")
         if self.lower is not None and self.upper is not None and self.lower > self.upper:
             raise fault(f"lower is {self.lower:g}, more than upper, {self.upper:g}", "/lower")
         return self
@@ -110,7 +118,7 @@ class Goal(Model):
     target: Maybe[Table] = Field(default=None, description="Target, one or one for each value [unit of the quantity]")
     lower: Maybe[Reals] = Field(default=None, description="Least value of a range [unit of the quantity]")
     upper: Maybe[Reals] = Field(default=None, description="Largest value of a range [unit of the quantity]")
-    weight: float = Field(default=1.0, gt=0, description="Weight in the objective [-]")
+    weight: float = Field(default=1.0, ge=1e-50, le=1e50, description="Weight in the objective [-]")
     name: str = Field(default="", description="Name in the answer; default: the kind")
 
     @model_validator(mode="before")
@@ -162,6 +170,8 @@ class DesignSettings(Model):
     """How to search. `auto` takes least squares where all goals have targets and nothing is constrained (of many
     unknowns and values by Levenberg and Marquardt, sparse), L-BFGS-B without targets, SLSQP with constraints, an
     augmented Lagrangian with many values of these."""
+
+    called: ClassVar[str] = "settings"
 
     method: Literal[METHODS] = Field(default="auto", description="Method; auto selects one and reports which")  # type: ignore[valid-type]
     tolerance: float = Field(default=1e-8, gt=0, le=1, description="Relative change at which the search ends [-]")

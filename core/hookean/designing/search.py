@@ -20,6 +20,7 @@ from hookean.designing.factors import Orders
 from hookean.designing.gains import at_minimum
 from hookean.designing.limits import LIMIT, beyond, size
 from hookean.designing.linearised import Linearised
+from hookean.designing.located import system_of
 from hookean.designing.methods import METHODS, Stopped, Unbounded
 from hookean.designing.polish import polish
 from hookean.designing.problem import Problem
@@ -29,7 +30,7 @@ from hookean.designing.sensitivity import gradients, jacobian
 from hookean.designing.summary import answer
 from hookean.designing.unknowns import Unknowns
 from hookean.errors import InputError
-from hookean.system.system import System, compile
+from hookean.system.system import System
 
 Floats = NDArray[np.float64]
 EDGE = 1e6  # of its size: no search goes further
@@ -56,7 +57,7 @@ class Search:
         keep: Keep | None = None,
     ) -> None:
         self.problem, self.progress, self.cancelled, self.keep = problem, progress, cancelled, keep
-        self.system: System = compile(problem.scene)
+        self.system: System = system_of(problem.scene)
         if missing := self.system.no_tangent(sparse=False):
             raise InputError("/scene/forces", f"{missing}, so nothing can be differentiated through its equilibrium")
         self.unknowns = Unknowns(problem, self.system)
@@ -183,8 +184,8 @@ class Search:
 
     def _called(self, number: int) -> str:
         """The variable of an unknown."""
-        parts = zip(self.unknowns.variables, self.unknowns.slices, strict=True)
-        return next(v.variable.title for v, part in parts if part.start <= number < part.stop)
+        parts = zip(self.unknowns.names, self.unknowns.slices, strict=True)
+        return next(name for name, part in parts if part.start <= number < part.stop)
 
     def _endless(self, y: Floats) -> str:
         """Which variable has left all sizes, as a sentence."""

@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 
 from hookean.designing.equilibrium import Equilibrium, settle
 from hookean.designing.kinks import kinks
+from hookean.designing.located import system_of
 from hookean.designing.problem import Problem
 from hookean.designing.quantities.base import Quantity, measured
 from hookean.designing.unknowns import Unknowns
 from hookean.errors import InputError
 from hookean.running.result import Result
 from hookean.stability.equilibrium import Stability
-from hookean.system.system import compile
 
 Floats = NDArray[np.float64]
 
@@ -63,7 +63,7 @@ def sensitivity(problem: Any, goals: Any = None, variables: Any = None) -> Sensi
     problem = Problem.read(problem)
     if not problem.goals:
         raise InputError("/goals", "a sensitivity needs at least one goal")
-    system = compile(problem.scene)
+    system = system_of(problem.scene)
     if missing := system.no_tangent(sparse=False):
         raise InputError("/scene/forces", f"{missing}, so nothing can be differentiated through its equilibrium")
     unknowns = Unknowns(problem, system)
@@ -84,7 +84,7 @@ def sensitivity(problem: Any, goals: Any = None, variables: Any = None) -> Sensi
         said += _along(found, _summed(found, unknowns, quantities, weights)[0])
     if unknowns.clipped:
         said.append(f"{unknowns.clipped} values of the scene are beyond the bounds; the shape has them at the bounds")
-    return Sensitivity(float(total), parts, values, [v.title for v in problem.variables], said, found.result)
+    return Sensitivity(float(total), parts, values, unknowns.names, said, found.result)
 
 
 def gradients(

@@ -21,6 +21,7 @@ Floats = NDArray[np.float64]
 Entries = list[dict[str, Any]]
 
 FLAT = 1e-12  # part of what a goal misses: variables that change it by less for each of their sizes do not change it
+LISTED = 10  # names in a sentence
 SEED = 5  # of the sum of a goal's values with which that is checked
 
 
@@ -74,23 +75,32 @@ def _out_of_reach(search: Search, found: Equilibrium, goals: Entries) -> list[st
 
 def _sentence(ended: DesignStatus, broken: list[str], iterations: int, value: float) -> str:
     if broken:
-        names = ", ".join(broken)
-        return f"No values within the bounds were found that meet the constraints: {names}. These are the nearest."
+        return (
+            f"No values within the bounds were found that meet the constraints: {_listed(broken)}. These are the"
+            " nearest."
+        )
+    steps = f"{iterations} iteration{'s' * (iterations != 1)}"
     if ended is DesignStatus.MAX_ITERATIONS:
-        return f"Stopped after {iterations} iterations with an objective of {value:.4g}; raise max_iterations to go on."
-    return f"Found after {iterations} iterations: objective {value:.4g}."
+        return f"Stopped after {steps} with an objective of {value:.4g}; raise max_iterations to go on."
+    return f"Found after {steps}: objective {value:.4g}."
 
 
 def _conflicts(goals: Entries) -> list[str]:
     """A sentence that names goals that pull against one another."""
     names = [entry["name"] for entry in goals if entry["conflicts"]]
-    return [f"These goals conflict: {', '.join(names)}."] if names else []
+    return [f"These goals conflict: {_listed(names)}."] if names else []
 
 
 def _held(variables: Entries, broken: list[str]) -> list[str]:
     """Where constraints cannot be met, which variables are at their bounds."""
     names = [entry["name"] for entry in variables if np.any(entry["at_bound"])]
-    return [f"At their bounds: {', '.join(names)}."] if broken and names else []
+    return [f"At their bounds: {_listed(names)}."] if broken and names else []
+
+
+def _listed(names: list[str]) -> str:
+    """Names in a sentence, of many the first ones."""
+    more = f" and {len(names) - LISTED} more" if len(names) > LISTED else ""
+    return ", ".join(names[:LISTED]) + more
 
 
 def _names(parts: Any) -> list[str]:
@@ -100,12 +110,12 @@ def _names(parts: Any) -> list[str]:
 def _variables(search: Search, values: Floats, gained: Gains | None) -> Entries:
     unknowns, entries = search.unknowns, []
     gain = np.zeros(unknowns.count) if gained is None else gained.bounds.sum(axis=0)
-    for variable, part in zip(unknowns.variables, unknowns.slices, strict=True):
+    for variable, part, name in zip(unknowns.variables, unknowns.slices, unknowns.names, strict=True):
         own, slack = values[part], AT_BOUND * search.scale[part]
         bound = (own <= unknowns.lower[part] + slack) | (own >= unknowns.upper[part] - slack)
         entries.append(
             {
-                "name": variable.variable.title,
+                "name": name,
                 "value": _shaped(variable, own),
                 "unit": variable.unit,
                 "at_bound": _shaped(variable, bound),
@@ -150,10 +160,10 @@ def _gains_of(search: Search, gained: Gains, goal: int) -> dict[str, Any]:
     way by 1; those that limit nothing are left out."""
     found: dict[str, Any] = {}
     unknowns = search.unknowns
-    for variable, part in zip(unknowns.variables, unknowns.slices, strict=True):
+    for variable, part, name in zip(unknowns.variables, unknowns.slices, unknowns.names, strict=True):
         own = np.where(_bound(search, part), gained.bounds[goal, part], 0.0)
         if own.any():
-            found[variable.variable.title] = _shaped(variable, own)
+            found[name] = _shaped(variable, own)
     first = 0
     for name, limits in zip(_names(search.problem.constraints), search.aims.limits, strict=True):
         own = gained.constraints[goal, first : first + len(limits[0])]

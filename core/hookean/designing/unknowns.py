@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hookean.designing.answer import once
 from hookean.designing.columns import AXES, Column, Entries, shape_of, tied
 from hookean.designing.drawn import Drawn, DrawnAnchor, DrawnColumn, Mass
 from hookean.designing.equilibrium import Equilibrium, as_held
@@ -17,6 +18,7 @@ from hookean.errors import InputError
 from hookean.forces.base import Force
 from hookean.running.patch import lead_forces, named
 from hookean.scene.scene import Scene
+from hookean.system.addressed import numbered
 from hookean.system.state import State
 from hookean.system.system import Held, System, hold
 
@@ -74,6 +76,9 @@ class Unknowns:
 
     def __init__(self, problem: Problem, system: System) -> None:
         self.problem = problem
+        weighed = [int(v.particles.max()) for v in problem.variables if v.field == "mass" and len(v.particles)]
+        if max(weighed, default=-1) >= len(system.scene.particles):  # of points of forces no scene has masses
+            system.scene = numbered(system, system.scene)
         self.variables: list[Column | Moved | Drawn | Mass] = []
         for i, variable in enumerate(problem.variables):
             self.variables.append(_kind(variable)(variable, system, f"/variables/{i}"))
@@ -82,6 +87,7 @@ class Unknowns:
         self.parts = [*zip(self.variables, self.slices, strict=True), *self._driven(system)]
         """All columns and anchors that vary, each with its part of the unknowns: variables, and what they drive."""
         _once([part for part, _ in self.parts])
+        self.names = once(v.variable.title for v in self.variables)
         self.count = int(ends[-1])
         if not self.count:
             raise InputError("/variables", "nothing varies: the forces have no elements")
@@ -121,11 +127,13 @@ class Unknowns:
                 continue
             own = entries.values[off > 0.0]
             if i < len(self.variables):
-                title, put = variable.variable.title, "each tie gets the mean of its values"
+                title, put = self.names[i], "each tie gets the mean of its values"
             else:
                 driven = variable.variable
                 title, put = f"{driven.force}.{driven.field}", "it follows its variable"
-            said.append(f"{title}: values from {own.min():g} to {own.max():g} in the scene are not kept; {put}")
+            span = f"values from {own.min():g} to {own.max():g}" if np.ptp(own) > 0.0 else f"the value {own[0]:g}"
+            verb = "are" if np.ptp(own) > 0.0 else "is"
+            said.append(f"{title}: {span} in the scene {verb} not kept; {put}")
         return said
 
     def _bounds(self) -> tuple[Floats, Floats]:
@@ -134,10 +142,17 @@ class Unknowns:
             given = variable.variable
             lower[part] = variable.lower if given.lower is None else max(variable.lower, given.lower)
             upper[part] = np.inf if given.upper is None else given.upper
+            if given.upper is not None and given.upper < variable.lower:
+                said = f"{given.upper:g} given; {given.field} is at least {variable.lower:g}"
+                raise InputError(f"{variable.pointer}/upper", said)
         for column, part in self.parts[len(self.variables) :]:
             if column.lower == 0.0 and isinstance(column, Column):
                 end, to = (lower, np.maximum) if column.factor > 0.0 else (upper, np.minimum)
                 end[part] = to(end[part], 0.0)
+                if (lower[part] > upper[part]).any():
+                    field, allowed = column.variable.field, "at least" if column.factor > 0.0 else "at most"
+                    said = f"{field} is at least 0, so its variable must be able to be {allowed} 0; change its bounds"
+                    raise InputError(column.pointer, said)
         return lower, upper
 
     def begin(self, values: Any) -> None:

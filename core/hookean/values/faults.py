@@ -27,13 +27,33 @@ def faults(error: ValidationError) -> list[InputError]:
     found = []
     kinds = {model.called for model in _models() if "kind" in model.model_fields}
     root = next((model for model in _models() if model.__name__ == error.title), None)
-    for number, entry in enumerate(error.errors(include_url=False)):
+    for number, entry in enumerate(_of_unions(error.errors(include_url=False))):
         context = entry.get("ctx", {})
         steps = [_cut(str(step)) for step in _pointed(entry["loc"], kinds)]
         pointer = "".join(f"/{step.replace('~', '~0').replace('/', '~1')}" for step in steps)
         pointer += str(context.get("at", ""))
         sentence = str(context.get("sentence") or _sentence(entry, root if number < SUGGESTED else None))
         found.append(InputError(pointer or "/", sentence))
+    return found
+
+
+def _of_unions(entries: Any) -> list[Any]:
+    """Faults with one for each value that may be of several types, where pydantic has one for each type: of a text or a
+    number one; where names or a list are allowed that of the names for a text, and those of the list for all else."""
+    found: list[Any] = []
+    for entry in entries:
+        place, kind = entry["loc"], entry["type"]
+        last = found[-1] if found else None
+        if kind == "int_type" and place[-1] == "int" and last is not None and last["loc"] == (*place[:-1], "str"):
+            found[-1] = {**last, "loc": place[:-1], "type": "text_or_number"}
+            continue
+        cut = next((i for i, step in enumerate(place) if str(step).startswith("tuple[")), None)
+        names = [e for e in found if e["type"] == "literal_error" and e["loc"][:-1] == place[:cut]] if cut else []
+        if names and isinstance(names[0]["input"], str):
+            names[0]["ctx"] = {**names[0]["ctx"], "or_a_list": True}
+            continue
+        found = [e for e in found if e not in names]
+        found.append(entry)
     return found
 
 
@@ -72,7 +92,8 @@ def _sentence(entry: Any, root: Any) -> str:
         allowed = [option or '""' for option in re.findall(r"'([^']*)'", context["expected"])]
         if not isinstance(entry["input"], str):
             return f"{given} given; a text expected, one of {', '.join(allowed)}"
-        return f"{given} given; {_meant(str(entry['input']), allowed, 'allowed:', always=True)}"
+        more = ", or a list" if context.get("or_a_list") else ""
+        return f"{given} given; {_meant(str(entry['input']), allowed, 'allowed:', always=True)}{more}"
     for rule, key, words in _LIMITS:
         if kind == rule:
             return f"{given} given; {words} {context[key]:g} allowed"
@@ -94,6 +115,7 @@ _EXPECTED = {
     "dict_type": "an object of names and values",
     "model_": "an object of names and values",
     "string_type": "a text",
+    "text_or_number": "a text or a whole number",
     "bool_": "true or false",
     "int_": "a whole number",
     "float_": "a number",

@@ -63,7 +63,7 @@ def about(scene: Scene, given: Any, prefix: str) -> dict[str, Any]:
     return {
         "kind": "design",
         "total": 1,
-        "names": once(variable.title for variable in search.problem.variables),
+        "names": search.unknowns.names,
         "columns": [("objective", ""), *columns(scene)],
     }
 

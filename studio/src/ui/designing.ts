@@ -42,6 +42,8 @@ export interface Search {
 const NONE: Search = { stage: "none", iterations: 0, objective: null, fault: "" };
 /** So long a search may go on when the problem has changed: a shorter one ends in its own time [ms]. */
 const PATIENCE = 700;
+/** Ends from whose values no search goes on well. */
+const NOWHERE = ["stalled", "unbounded"];
 
 const kept = (key: string) => `hookean-design-${key}`;
 
@@ -183,7 +185,7 @@ export class Designing {
   /** Values to begin with: the best so far, where the same may vary in the same scene. */
   private begin(problem: Problem): number[] | null {
     const answer = this.answer.peek();
-    if (!answer || this.of !== unknowns(problem)) return null;
+    if (!answer || NOWHERE.includes(answer.status) || this.of !== unknowns(problem)) return null;
     return answer.variables.flatMap(({ value }) => [value].flat(2));
   }
 }
