@@ -216,3 +216,18 @@ def test_what_has_no_place_of_its_own_survives_a_rebuilding_and_other_edits_forb
     simulation.rebuild({"across": 4})
     with pytest.raises(InputError, match="/family: this model was not made from a family"):
         Simulation(Scene(particles=[[0, 0, 0]])).rebuild({})
+
+
+def test_a_parameter_that_adds_or_drops_a_force_rebuilds_what_nobody_edited() -> None:
+    """Edge cables go where the edges are held, and come back with the corners; a value of the net stays on the way.
+    Edge cables that somebody has given another stiffness are not dropped without a word."""
+    simulation = Simulation(family("saddle", across=4, along=4))
+    simulation.patch({"forces": {"net": {"stiffness": 7.0}}})
+    simulation.rebuild({"held": "edges"})
+    assert [force.name for force in simulation.scene.forces] == ["net"]
+    simulation.rebuild({"held": "corners"})
+    assert [force.name for force in simulation.scene.forces] == ["net", "edges"]
+    assert np.asarray(simulation.scene.forces[0].stiffness).tolist() == 7.0
+    simulation.patch({"forces": {"edges": {"stiffness": 9.0}}})
+    with pytest.raises(InputError, match=r"edited after it was made \(edges\)"):
+        simulation.rebuild({"held": "edges"})

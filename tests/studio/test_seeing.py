@@ -52,6 +52,27 @@ def test_outliers_do_not_set_the_scale_and_are_marked(tab: Studio):
     assert high < 0.02 / 1.01 * 500 + 1
 
 
+@pytest.mark.slow
+def test_the_view_that_is_on_is_pressed_until_it_is_turned_by_hand(tab: Studio):
+    """By button and by key; a zoom keeps it, a turn by mouse leaves none."""
+    shown(tab, "seen-looks", net(3))
+    views = tab.page.get_by_role("group", name="View")
+    pressed = views.get_by_role("button", pressed=True)
+    tab.until(lambda: pressed.all_inner_texts() == ["Perspective"])
+    tab.press("Top")
+    tab.until(lambda: pressed.all_inner_texts() == ["Top"])
+    tab.page.get_by_role("application").press("3")
+    tab.until(lambda: pressed.all_inner_texts() == ["Front"])
+    tab.page.mouse.move(300, 600)
+    tab.page.mouse.wheel(0, 200)
+    tab.place(0)
+    assert pressed.all_inner_texts() == ["Front"]
+    tab.page.mouse.down()
+    tab.page.mouse.move(340, 570, steps=4)
+    tab.page.mouse.up()
+    tab.until(lambda: pressed.all_inner_texts() == [])
+
+
 @pytest.mark.soak
 def test_named_views_are_orthographic(tab: Studio):
     """Particles that differ only in depth are drawn at the same place, to less than a pixel; a drag from above keeps

@@ -58,13 +58,17 @@ def test_springs_are_sorted_selected_and_saved(cable: Studio):
 
 
 def test_reactions_are_summed(cable: Studio):
-    """Equilibrium: the reactions together are minus the loads, 6 x 20 N; forces along x cancel. A float32 frame of
-    numbers below 256 N is exact to 2^-17 N each."""
+    """Equilibrium: the reactions together are minus the loads, 6 x 20 N; forces along x cancel, to 0 but for rounding. A
+    float32 frame of numbers below 256 N is exact to 2^-17 N each. Before anything is sorted their sizes are counted:
+    the two ends bear the same."""
     cable.page.get_by_role("button", name="Reactions", exact=True).click()
     sums = cable.page.locator("tfoot td").all_inner_texts
     cable.until(lambda: len(sums()) == 4)
     x, _, z, size = sums()
-    assert abs(float(x)) < 1e-3 and float(z) == pytest.approx(120, abs=1e-3) and size == ""
+    assert x == "0" and float(z) == pytest.approx(120, abs=1e-3) and size == ""
+    bars = cable.page.get_by_role("group", name="Histogram of size").get_by_role("button")
+    held = cable.until(lambda: [int(bar.get_attribute("aria-label").split()[0]) for bar in bars.all()])
+    assert sum(held) == 2
 
 
 def test_stability_and_accuracy_are_at_the_status(cable: Studio):

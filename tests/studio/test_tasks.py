@@ -193,7 +193,7 @@ def measures(result: Result) -> dict[str, float | str]:
         "Sum of reactions, y [kN]": reactions[:, 1].sum(),
         "Sum of reactions, z [kN]": reactions[:, 2].sum(),
         "Energy [kN·m]": result.energy["total"],
-        "Status": "converged",
+        "Status": "at rest",
         "Stability": "stable",
     }
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -10,7 +11,7 @@ import pytest
 
 from serving import CABLE
 
-from .browser import Studio, Wire
+from .browser import Studio, Wire, net
 from .conftest import Opened
 from .service import Service, equilibrium
 
@@ -159,3 +160,26 @@ def test_a_frame_that_cannot_be_read_is_told_of(tab: Studio):
     page.wait_for_timeout(500)
     assert told.is_visible()
     assert page.get_by_role("button", name="Play").is_disabled()
+
+
+@pytest.mark.slow
+def test_a_session_that_is_slow_is_told_from_one_that_does_not_answer(tab: Studio):
+    """It plays and no frame comes: with a service that answers it is slow; with one that does not, that is reported; and
+    the next frame ends both. The age of what is shown is that of its last frame."""
+    service, page = tab.service, tab.page
+    service.put("slow", net(4))
+    tab.open("slow")
+    wire = Wire(tab)
+    tab.allowed = ["failed: .*/v1/sessions/slow", "ERR_FAILED"]
+    tab.press("Play")
+    page.get_by_text("Live", exact=True).wait_for()
+    wire.keep()
+    page.get_by_text("Slow: last update").wait_for()
+    assert page.get_by_text("updates arrive slowly").is_visible()
+    page.route(re.compile("/v1/sessions/slow$"), lambda route: route.abort())
+    page.get_by_text("No answer: last update").wait_for()
+    assert page.get_by_text("the service does not answer").is_visible()
+    assert int(re.search(r"(\d+) s ago", page.locator(".chip").first.inner_text())[1]) >= 3
+    wire.give()
+    page.get_by_text("Live", exact=True).wait_for()
+    tab.press("Pause")

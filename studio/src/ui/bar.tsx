@@ -7,10 +7,9 @@ import { go } from "./place";
 import type { Studio } from "./studio";
 import { ThemeChoice } from "./themechoice";
 
-const CHIPS: Record<Connection, string> = {
+const CHIPS: Record<Exclude<Connection, "silent">, string> = {
   connecting: "Connecting ...",
   live: "Live",
-  silent: "No updates",
   lost: "Reconnecting ...",
   locked: "Not logged in",
   gone: "Not found",
@@ -35,12 +34,23 @@ export function Bar({ studio, title }: { studio: Studio; title: string }) {
       )}
       <h1 title={title}>{title}</h1>
       <span class={`chip ${connection}`} role="status">
-        {CHIPS[connection]}
+        {connection === "silent" ? <Quiet studio={studio} /> : CHIPS[connection]}
       </span>
       {studio.session.readOnly ? <span class="chip reading">Read only</span> : <Transport studio={studio} />}
       <Keys studio={studio} />
       <ThemeChoice />
     </header>
+  );
+}
+
+/** It plays and nothing comes. The seconds are not read out: they change all the time. */
+function Quiet({ studio: { pulse } }: { studio: Studio }) {
+  const beats = pulse.beats.value;
+  return (
+    <>
+      {beats === null ? "Last" : beats ? "Slow: last" : "No answer: last"} update{" "}
+      <span aria-hidden="true">{pulse.age.value} s ago</span>
+    </>
   );
 }
 

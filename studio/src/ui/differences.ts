@@ -1,5 +1,7 @@
 // Two results side by side, as rows of a table: numbers of the core, with units and differences.
 import type { Result, Topology } from "../model";
+import { stateOf } from "./running";
+import { sum } from "./tabling";
 
 export interface Side {
   topology: Topology;
@@ -32,7 +34,7 @@ const MEASURES: [string, "" | "-" | "length" | "force" | "energy", Measure][] = 
   ["Energy", "energy", ({ result }) => result.energy["total"] ?? NaN],
   ["Residual", "-", ({ result }) => result.residual],
   ["Out of balance", "force", ({ result }) => result.out_of_balance],
-  ["Status", "", ({ result }) => result.status.replaceAll("_", " ")],
+  ["Status", "", ({ result }) => stateOf(result)],
   ["Stability", "", ({ result }) => result.stability.replaceAll("_", " ")],
 ];
 
@@ -70,7 +72,7 @@ function axial({ topology, result }: Side): number[] {
   return found.length ? found : [NaN];
 }
 
-const total = ({ reactions }: Result, axis: number) => reactions.force.reduce((sum, force) => sum + force[axis]!, 0);
+const total = ({ reactions }: Result, axis: number) => sum(reactions.force.map((force) => force[axis]!));
 
 /** The largest or smallest of numbers; NaN of none. */
 const extreme = (values: number[], of: (a: number, b: number) => number) =>

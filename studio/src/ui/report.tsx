@@ -20,8 +20,10 @@ export function Report({ studio }: { studio: Studio }) {
   );
 }
 
+const SLOW = "The session is running, but updates arrive slowly; showing the last received values.";
+const QUIET = "Playing, but the service does not answer; showing the last received values.";
+
 const LOST = {
-  silent: "Playing, but no update for 2 s; showing the last received values.",
   lost:
     "Connection to the service lost; retrying. If it has ended, start it with hookean studio: this page then " +
     "continues. Showing the last received values.",
@@ -32,10 +34,11 @@ const LOST = {
 const NONE =
   "Unknown session: it was deleted, or the link belongs to another service. Choose another one under All sessions.";
 
-function Lost({ studio: { session } }: { studio: Studio }) {
+function Lost({ studio: { session, pulse } }: { studio: Studio }) {
   const connection = session.connection.value;
   const none = connection === "gone" && !session.summary.value;
-  const sentence = none ? NONE : connection in LOST ? LOST[connection as keyof typeof LOST] : "";
+  const known = none ? NONE : connection in LOST ? LOST[connection as keyof typeof LOST] : "";
+  const sentence = connection !== "silent" ? known : pulse.beats.value === false ? QUIET : SLOW;
   return (
     <>
       <p role="alert" class={session.said.value ? "fault" : "unseen"}>

@@ -109,4 +109,4 @@ const STATES: Record<string, string> = {
 };
 
 /** The status of a session that does not play, in words. */
-export const stateOf = (session: Summary) => STATES[session.status] ?? session.status;
+export const stateOf = (session: Pick<Summary, "status">) => STATES[session.status] ?? session.status;

@@ -1,4 +1,6 @@
 // Colours, layers, views and the axis lock of drags.
+import { useEffect, useState } from "preact/hooks";
+import { lookOf } from "../view/camera";
 import { palette } from "../view/colours";
 import type { Colouring, Layer, Legend, Lock, Look } from "../view/types";
 import { ScaleChoice } from "./scalechoice";
@@ -101,9 +103,16 @@ export function SeePanel({ studio: { options, session } }: { studio: Studio }) {
   );
 }
 
-/** Over the canvas: the views. */
+/** Over the canvas: the views, the one that is on pressed; once it is turned by hand, none is. */
 export function Looks({ studio: { view } }: { studio: Studio }) {
   const now = view.value;
+  const [look, setLook] = useState<Look | null>(null);
+  useEffect(() => {
+    if (!now) return;
+    const read = () => setLook(lookOf(now.place()));
+    read();
+    return now.onMoved(read);
+  }, [now]);
   return (
     <div class="looks" role="group" aria-label="View">
       <button
@@ -121,6 +130,7 @@ export function Looks({ studio: { view } }: { studio: Studio }) {
           type="button"
           disabled={!now}
           aria-keyshortcuts={String(i + 1)}
+          aria-pressed={look === name}
           title={`${seen} (${i + 1})`}
           onClick={() => now?.look(name)}
         >

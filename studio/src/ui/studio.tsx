@@ -13,6 +13,7 @@ import { keepColours, keepGroups, keptColours, keptGroups } from "./kept";
 import { following } from "./moved";
 import { Panels } from "./panels";
 import { arrive, entry } from "./place";
+import { Pulse } from "./pulse";
 import { Readings } from "./readings";
 import { Rested } from "./rested";
 import { sharing } from "./sharing";
@@ -37,6 +38,7 @@ export interface Studio {
   film: Film;
   traced: Traced;
   casing: Casing;
+  pulse: Pulse;
   /** The variant on a canvas of its own; null for none. */
   beside: Signal<Variant | null>;
 }
@@ -63,7 +65,8 @@ export function SessionPage({ name }: { name: string }) {
     const film = new Film(session, chosen);
     const traced = new Traced(session, chosen, film);
     const casing = new Casing(session, chosen);
-    const read = { readings, rested, design, surfacing, film, traced, casing };
+    const pulse = new Pulse(session);
+    const read = { readings, rested, design, surfacing, film, traced, casing, pulse };
     setStudio({ session, options: chosen, view: signal(null), beside: signal(null), ...read });
     const stops = [sharing(session, chosen), following(session, chosen)];
     return () => {

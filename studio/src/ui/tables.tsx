@@ -4,7 +4,7 @@ import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import type { Frame } from "../frame";
 import { keep } from "./out";
 import type { Studio } from "./studio";
-import { type Bin, bins, type Column, csv, type Named, sorted, sum, type Table, tabled, TABLES } from "./tabling";
+import { type Bin, bins, type Column, counting, csv, type Named, sorted, sum, type Table, tabled, TABLES } from "./tabling";
 import { counted, measured, said, titled } from "./words";
 
 const ROWS = 100;
@@ -38,7 +38,8 @@ export function Tables({ studio }: { studio: Studio }) {
     setBy(UNSORTED);
     setWhat(name);
   };
-  const values = table?.columns[by.column]?.values;
+  const column = table?.columns[counting(table, by.column)];
+  const values = column?.values;
   const places = only && values ? order.filter((place) => only.holds(values[place]!)) : order;
   const save = () => keep(new Blob([csv(table!, places)], { type: "text/csv" }), `${session.key}-${what}.csv`);
   return (
@@ -59,9 +60,7 @@ export function Tables({ studio }: { studio: Studio }) {
           Save rows
         </button>
       </div>
-      {table && by.column >= 0 && (
-        <Histogram column={table.columns[by.column]!} kind={table.kind} only={only} select={select} />
-      )}
+      {table && column && <Histogram column={column} kind={table.kind} only={only} select={select} />}
       {table && (
         <Rows
           studio={studio}
@@ -178,26 +177,34 @@ interface OfBars {
 function Histogram({ column, kind, only, select }: OfBars) {
   const found = useMemo(() => bins(column.values, BARS), [column.values]);
   const most = Math.max(1, ...found.map(({ places }) => places.length));
+  if (!found.length) return null;
+  const [low, high] = [found[0]!.low, found.at(-1)!.high];
   return (
-    <div class="bars" role="group" aria-label={`Histogram of ${column.name}`}>
-      {found.map((bin, i) => {
-        const isOnly = only !== null && bin.low === only.low && bin.high === only.high;
-        const range = `${said(bin.low, 3)} to ${measured(Number(bin.high.toPrecision(3)), column.unit)}`;
-        const name = `${counted(bin.places.length, kind)} from ${range}`;
-        return (
-          <button
-            key={i}
-            type="button"
-            title={`${name}; select them`}
-            aria-label={name}
-            aria-pressed={isOnly}
-            disabled={!bin.places.length}
-            onClick={() => select(isOnly ? null : bin)}
-          >
-            <span style={{ height: `${(100 * bin.places.length) / most}%` }} />
-          </button>
-        );
-      })}
-    </div>
+    <>
+      <div class="bars" role="group" aria-label={`Histogram of ${column.name}`}>
+        {found.map((bin, i) => {
+          const isOnly = only !== null && bin.low === only.low && bin.high === only.high;
+          const range = `${said(bin.low, 3)} to ${measured(Number(bin.high.toPrecision(3)), column.unit)}`;
+          const name = `${counted(bin.places.length, kind)} from ${range}`;
+          return (
+            <button
+              key={i}
+              type="button"
+              title={`${name}; select them`}
+              aria-label={name}
+              aria-pressed={isOnly}
+              disabled={!bin.places.length}
+              onClick={() => select(isOnly ? null : bin)}
+            >
+              <span style={{ height: `${(100 * bin.places.length) / most}%` }} />
+            </button>
+          );
+        })}
+      </div>
+      <p class="faint">
+        {titled(column.name)} {said(low, 3)} to {measured(Number(high.toPrecision(3)), column.unit)}: click a bar to
+        select its {kind}s.
+      </p>
+    </>
   );
 }

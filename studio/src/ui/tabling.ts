@@ -95,7 +95,19 @@ export function sorted(table: Table, column: number, isDown: boolean): number[] 
   return [...known.sort((a, b) => (isDown ? values[b]! - values[a]! : values[a]! - values[b]!)), ...none];
 }
 
-export const sum = (values: ArrayLike<number>) => Array.from(values).reduce((total, value) => total + value, 0);
+/** What is left of a sum whose numbers cancel, as numbers of frames have seven digits. */
+const ROUNDING = 1e-6;
+
+/** The sum of numbers; 0 where they cancel but for their rounding. */
+export function sum(values: number[]): number {
+  const add = (total: number, value: number) => total + value;
+  const total = values.reduce(add, 0);
+  return Math.abs(total) > ROUNDING * values.map(Math.abs).reduce(add, 0) ? total : 0;
+}
+
+/** The column whose histogram is shown: by which rows are sorted, else what matters first. */
+export const counting = (table: Table, column: number) =>
+  column >= 0 ? column : table.kind === "spring" ? 0 : table.columns.length - 1;
 
 export interface Bin {
   low: number;

@@ -55,7 +55,7 @@ export const plain = (sentence: string) =>
       field ? `${field.replaceAll("_", " ")} of force ${number}` : `force ${number}`,
     )
     .replace(/(^|\. )the ([a-z])/g, (_, before: string, first: string) => `${before}The ${first}`)
-    .replace(/\b(?:the )?time_step\b/g, "the time step");
+    .replace(/\b(?:the )?(time_step|weld_tolerance)\b/g, (_, name: string) => `the ${name.replace("_", " ")}`);
 
 const NUMBERED = /\b(particle|spring)(?: (\d+)|s (\d+(?:(?:, and |, | and )\d+(?![\d.]))*))/g;
 

@@ -29,6 +29,12 @@ export interface Place {
   angle: number;
 }
 
+/** The named view that this is; null where it was turned by hand. */
+export function lookOf({ towards, angle }: Place): Look | null {
+  const isThis = ([to, wide]: [Vector3, number]) => to.distanceTo(towards) < 1e-3 && Math.abs(angle / wide - 1) < 1e-3;
+  return (Object.keys(LOOKS) as Look[]).find((look) => isThis(LOOKS[look])) ?? null;
+}
+
 export class Eye {
   readonly camera = new PerspectiveCamera(FREE, 1, 0.1, 1000);
   readonly controls: OrbitControls;

@@ -30,15 +30,28 @@ def rebuilt(scene: Scene, parameters: Mapping[str, Any]) -> Scene:
     changed = [n for n in type(scene).model_fields if n not in CARRIED and _value(scene, n) != _value(made, n)]
     if changed:
         raise _edited(", ".join(changed))
-    forces = [_carried(*three) for three in zip(scene.forces, made.forces, fresh.forces, strict=False)]
-    if len(scene.forces) < len(made.forces) or len(made.forces) != len(fresh.forces):
+    if len(scene.forces) < len(made.forces):
         raise _edited("forces")
+    forces = _all_carried(scene, made, fresh)
     places = {"mesh", "particles"} if _numbered(made) == _numbered(fresh) else {"mesh"}
     for force in scene.forces[len(made.forces) :]:
         if any(getattr(force, place, None) is not None for place in PLACES if place not in places):
             raise _edited(f"the added force {force.name or force.called!r}")
         forces.append(force)
     return fresh.replaced(forces=tuple(forces), settings=scene.settings)
+
+
+def _all_carried(scene: Scene, made: Scene, fresh: Scene) -> list[Force]:
+    """The forces of the fresh scene with what was changed of their namesakes. One that the fresh scene has no more, as
+    edge cables where the edges are held, may not have been changed."""
+    forces = {(force.called, force.name): force for force in fresh.forces}
+    for force, old in zip(scene.forces, made.forces, strict=False):
+        place = old.called, old.name
+        if place in forces:
+            forces[place] = _carried(force, old, forces[place])
+        elif force.model_dump(mode="json") != old.model_dump(mode="json"):
+            raise _edited(old.name)
+    return list(forces.values())
 
 
 def _carried(force: Force, made: Force, fresh: Force) -> Force:
