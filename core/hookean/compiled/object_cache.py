@@ -21,7 +21,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -125,12 +125,12 @@ class Entry:
         told = json.loads(head)
         if hashlib.sha256(code).hexdigest() != told["digest"]:
             raise ValueError("damaged")
-        self.kinds = tuple(np.ndarray if isinstance(one, tuple) else one for one in kind)
-        self.numbers = [place for place, one in enumerate(self.kinds) if one is not np.ndarray]
+        self.kind = kind
+        self.numbers = [(place, one) for place, one in enumerate(kind) if not isinstance(one, tuple)]
         self.head = [id(np.ndarray), *(id(np.dtype(letter)) for letter in letters(kind))]
         self.end = len(self.head) + len(kind)
         self.returned = struct.Struct(f"={told['result']}")
-        numbers = "".join("d" if one is float else "q" for one in self.kinds)
+        numbers = "".join("d" if one is float else "q" for one in kind)
         self.row = struct.Struct(f"={len(self.head)}q{numbers}{self.returned.size}x")
         binding = _llvm()
         target = binding.Target.from_default_triple().create_target_machine(codemodel="jitdefault", jit=True)
@@ -142,24 +142,28 @@ class Entry:
         native = self.engine.get_function_address("hookean_native")
         if not where or not native:
             raise ValueError("no entry")
-        self.call = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_void_p)(where)
+        self.call = ctypes.CFUNCTYPE(ctypes.c_int32)(where)  # with types of arguments it would be slower to call
         self.address: int = ctypes.c_int64.from_address(native).value  # for numba's own way of calling
         self.run = self._caller()  # what the code returns for values; REFUSED where it does not take these
 
     def _caller(self) -> Callable[[tuple[Any, ...]], Any]:
         """The function behind `run`; what it needs is in its own variables, which is quicker to reach than ours."""
-        kinds, numbers, head, end = self.kinds, self.numbers, tuple(self.head), 8 * self.end
-        pack, call, returned = self.row.pack, self.call, self.returned.unpack_from
+        numbers, end, size = self.numbers, 8 * self.end, len(self.kind)
+        pack, call, returned = partial(self.row.pack, *self.head), self.call, self.returned.unpack_from
         count = len(self.returned.unpack(bytes(self.returned.size)))
 
         def run(values: tuple[Any, ...]) -> Any:
-            if tuple(map(type, values)) != kinds and tuple(map(_plain, values)) != kinds:
+            if len(values) != size:
                 return REFUSED
-            words: list[Any] = list(map(id, values))
-            for place in numbers:
-                words[place] = values[place]
+            words: Any = map(id, values)  # where arrays are: the code looks whether they are arrays
+            if numbers:
+                words = list(words)
+                for place, kind in numbers:
+                    value = words[place] = values[place]
+                    if type(value) is not kind and SCALARS.get(type(value)) is not kind:
+                        return REFUSED
             try:
-                row = pack(*head, *words)  # bytes of nobody else's: the code may write at their end
+                row = pack(*words)  # bytes of nobody else's: the code may write at their end
             except struct.error:  # an integer of more than 64 bits
                 return REFUSED
             if ended := call(row):
@@ -172,11 +176,6 @@ class Entry:
             return found[0] if count == 1 else found
 
         return run
-
-
-def _plain(value: Any) -> type | None:
-    """The type that a value has in a row of numbers; None where it has none."""
-    return np.ndarray if type(value) is np.ndarray else SCALARS.get(type(value))
 
 
 def _load(path: Path, kind: Kind) -> Entry | None:

@@ -74,7 +74,7 @@ class Moments(Rider):
     @classmethod
     def missing(cls, force: Any, block: Block) -> str:
         """A moment needs a rotation."""
-        if not block.parameters[:, 3:6].any():
+        if not np.count_nonzero(force.moment) or not block.parameters[:, 3:6].any():
             return ""
         return NONE.format(block.indices[np.argmax(block.parameters[:, 3:6].any(axis=1)), 0])
 

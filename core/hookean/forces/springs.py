@@ -302,9 +302,9 @@ class Springs(Force):
         """Arrays for the kernel: k, c, rest length, factor, upper and lower cutoff, plasticity as a length."""
         index = places.elements(self)
         stiffness, rest = spring_inputs.resolved(self, places, index)
-        limit = np.where(
-            np.greater(self.yield_extension, 0.0), self.yield_extension, self.plasticity * (rest * self.rest_factor)
-        )
+        limit = self.plasticity * (rest * self.rest_factor)
+        if np.count_nonzero(self.yield_extension):
+            limit = np.where(np.greater(self.yield_extension, 0.0), self.yield_extension, limit)
         return Block.of(
             index,
             memory=1,

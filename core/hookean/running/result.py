@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from dataclasses import asdict, dataclass, field, replace
+from dataclasses import asdict, dataclass, field
 from enum import StrEnum
 from typing import TYPE_CHECKING, Any
 
@@ -292,7 +292,7 @@ def gather(
         iterations=state.iteration,
         time=state.time,
         solver=solver,
-        report=replace(report, unmatched=list(report.unmatched), warnings=list(report.warnings)),
+        report=Report(report.merged, [*report.unmatched], [*report.warnings], report.beside, report.missed),
         units=system.scene.units,
         scene=system.scene,
     )
@@ -366,10 +366,10 @@ def _reactions(system: System, state: State, found: Balance, forces: list[dict[s
     for particles, entry in elastic:
         names.update(dict.fromkeys(particles.tolist(), entry["name"]))
     # what holds axes names a reaction before what holds rotations alone; else the last one
-    for anchor in sorted(system.held, key=lambda anchor: not anchor.free.all()):
+    for anchor in sorted(system.held, key=lambda anchor: anchor.some):
         names.update(dict.fromkeys(anchor.particles.tolist(), anchor.name))
     exact = np.isin(rows, held) if elastic else np.ones(len(held), dtype=bool)
-    force, moment = found.reactions[rows], system.slots.moments(found.reactions, rows)
+    force, moment = found.reactions.take(rows, axis=0), system.slots.moments(found.reactions, rows)
     if elastic:
         force[~exact] = 0.0
         moment[~exact[: len(moment)]] = 0.0
@@ -390,8 +390,9 @@ def _reactions(system: System, state: State, found: Balance, forces: list[dict[s
 def held_particles(system: System, state: State) -> NDArray[np.int64]:
     """Particles that are held on some axis, or whose rotations are, in their order."""
     held, slots = _any(state.free == 0), system.slots
-    held[slots.particles] |= held[slots.first]
-    return np.flatnonzero(held[: slots.count])
+    if len(slots):
+        held[slots.particles] |= held[slots.first]
+    return held[: slots.count].nonzero()[0]
 
 
 COMPONENTS = (

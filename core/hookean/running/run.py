@@ -88,7 +88,9 @@ def relax_state(
         state.v[:] = 0.0  # fictitious: nothing moved
     system.report.warnings += [note for note in watch.notes if note not in system.report.warnings]
     if status is Status.CONVERGED and not method.physical:
-        watch.found = replace(watch.found, reactions=exact_reactions(system, state, watch.found, method))
+        reactions = exact_reactions(system, state, watch.found, method)
+        if reactions is not watch.found.reactions:
+            watch.found = replace(watch.found, reactions=reactions)
     used = getattr(method, "used", None)
     name = f"auto: {', '.join(used) or 'nothing to do'}" if used is not None else method.name
     message = watch.sentence(system, status)

@@ -3,14 +3,20 @@
 from __future__ import annotations
 
 import importlib
+from functools import cache
 
 from hookean.solvers.base import Solver
 
 
 def solver(name: str) -> Solver:
     """A fresh solver by its name."""
-    found = importlib.import_module(f"{__name__}.{name}").Method()
-    assert isinstance(found, Solver)
+    return _method(name)()
+
+
+@cache
+def _method(name: str) -> type[Solver]:
+    found = importlib.import_module(f"{__name__}.{name}").Method
+    assert issubclass(found, Solver)
     return found
 
 

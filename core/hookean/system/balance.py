@@ -28,6 +28,7 @@ CHUNK = 2048  # elements
 ROUNDING = float(np.finfo(np.float64).eps) / 2.0
 COARSE = 1e-3  # a rounding floor above this leaves too little to call a shape known
 UNSTRAINED = 1e-6  # strain below which the forces of a component without loads count as none
+NO_PLANES = np.zeros((0, 9))
 BALANCED = 1e-9  # part of the loads that may be left of their sum where they balance one another
 
 OUT, WORST, BEYOND, NOISE, LOAD, LOADED, ALONG = 0, 1, 2, 3, 4, 5, slice(6, 9)
@@ -144,7 +145,7 @@ def balance(system: System, state: State) -> Balance:
     for group in system.groups:
         if group.cls.role != "load" and len(group.block.indices):
             dispatch.compiled(reach_of)(group.block.indices, state.x, reach)
-    planes = np.concatenate([np.zeros((0, 9)), *(group.block.parameters for group in system.contacts)])
+    planes = np.concatenate([group.block.parameters for group in system.contacts]) if system.contacts else NO_PLANES
     loose = np.zeros_like(parts.loose) if len(planes) else parts.loose
     given = state.x, f, w, state.free, loads, contact, reach, parts.label, left, reactions, found, scales, loose
     loaded, *summed, faint = dispatch.compiled(judge)(*given)

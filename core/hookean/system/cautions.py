@@ -20,12 +20,12 @@ Floats = NDArray[np.float64]
 
 
 def coincide(x, indices, rest, touched, same, closed):  # type: ignore[no-untyped-def]
-    """Note which particles elements touch, which of those between two begin and end at one, and which of the others
-    have a rest length and no length at the start; how many of each."""
+    """Count how many ends of elements touch a particle, 2 for more, and note which of those between two begin and end
+    at one, and which of the others have a rest length and no length at the start; how many of each."""
     alike, short = 0, 0
     for e in range(indices.shape[0]):
         for j in range(indices.shape[1]):
-            touched[indices[e, j]] = 1
+            touched[indices[e, j]] = min(touched[indices[e, j]] + 1, 2)
         if indices.shape[1] == 2:
             a, b = np.uint64(indices[e, 0]), np.uint64(indices[e, 1])
             here = x[a, 0] == x[b, 0] and x[a, 1] == x[b, 1] and x[a, 2] == x[b, 2]
@@ -74,7 +74,8 @@ def cautions(system: System) -> list[str]:
                     f"/forces/{part.number}: {short} of {len(closed)} elements have zero length (first: element "
                     f"{int(np.argmax(closed))}), so their forces have no direction; move their ends apart"
                 )
-    idle = np.flatnonzero(((system.load_count > 0) & (touched == 0))[: system.slots.count])
+    once = touched == 1
+    idle = ((system.load_count > 0) & (touched == 0))[: system.slots.count].nonzero()[0]
     for number, given in enumerate(system.scene.anchors):
         places = given.points if given.particles is None else given.particles
         if places is not None and not places.size:
@@ -82,9 +83,9 @@ def cautions(system: System) -> list[str]:
             warnings.append(f"/anchors/{number}: {said}")
     warnings += _elsewhere(system)
     for anchor in system.held:
-        if not anchor.free.any():
+        if anchor.whole:
             touched[anchor.particles] = 1
-        if not anchor.turning.all() and (none := system.slots.rows(anchor.particles) < 0).any():
+        if anchor.turns and (none := system.slots.rows(anchor.particles) < 0).any():
             warnings.append(
                 f"/anchors/{anchor.number}/rotations: particle {anchor.particles[none][0]} has no rotation to hold: no "
                 "beam ends there" + (f" (nor have {none.sum() - 1} more)" if none.sum() > 1 else "")
@@ -106,13 +107,13 @@ def cautions(system: System) -> list[str]:
         from hookean.system.near_misses import near_misses
 
         warnings += near_misses(system)
-    return [*warnings, *closed_up(system.places), *loose_ends(system)]
+    return [*warnings, *closed_up(system.places), *loose_ends(system, once)]
 
 
 def closed_up(places: Welded) -> list[str]:
     """Meshes with edges whose ends became one particle, as a mesh in millimetres has them where the unit is a metre."""
     found = []
-    named = (getattr(force, "mesh", None) for force in places.scene.forces if force.role != "load")
+    named = [vars(force).get("mesh") for force in places.scene.forces if force.role != "load"]
     for name in dict.fromkeys(str(mesh) for mesh in named if mesh is not None):
         mesh = places.scene.meshes[name]
         ends = np.stack([mesh.faces, np.roll(mesh.faces, -1, axis=1)], axis=2).reshape(-1, 2)
@@ -164,8 +165,8 @@ def _nowhere(system: System, number: int) -> str:
 def _elsewhere(system: System) -> list[str]:
     """Anchors that hold a particle where they, or earlier ones, do not: the last target counts."""
     warnings: list[str] = []
-    held = np.concatenate([np.zeros(0, np.int64), *(anchor.particles for anchor in system.held)])
-    if not len(held) or np.bincount(held).max() == 1:
+    held = [particle for anchor in system.held for particle in anchor.particles.tolist()]
+    if len(set(held)) == len(held):
         return warnings
     target, holder = np.full((len(system.x), 3), np.nan), np.full((len(system.x), 3), -1)
     for anchor in system.held:

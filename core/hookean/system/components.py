@@ -65,11 +65,11 @@ def components(groups: list[Group], free: Floats) -> Components:
 def _loose(flags: Ints, label: Ints, partly: list[tuple[Ints, Floats]]) -> tuple[Floats, NDArray[np.bool_]]:
     """The directions (k, 3, 3) in which nothing holds a component, and which have any support (k,)."""
     loose = np.zeros((len(flags), 3, 3))
-    some = np.flatnonzero((flags & HELD) == 0)
-    if not len(some):
-        return loose, np.ones(len(flags), bool)
-    axes = (flags[some, None] & AXES) > 0
     supported = (flags & HELD) > 0
+    if supported.all():
+        return loose, supported
+    some = np.flatnonzero(~supported)
+    axes = (flags[some, None] & AXES) > 0
     supported[some] = axes.any(axis=1)
     loose[some] = np.eye(3) * ~axes[:, :, None]
     if partly:

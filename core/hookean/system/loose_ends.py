@@ -24,8 +24,14 @@ Ints = NDArray[np.int64]
 ASIDE = 0.02  # of the length of a line
 
 
-def loose_ends(system: System) -> list[str]:
-    """A sentence for each force with such ends in the start shape."""
+def loose_ends(system: System, once: NDArray[np.bool_]) -> list[str]:
+    """A sentence for each force with such ends in the start shape; `once` (n,): one end of an element alone is at that
+    particle."""
+    loose = once.copy()
+    for anchor in system.held:
+        loose[anchor.particles] = False
+    if not loose.any():
+        return []
     lines = [
         (part, group.particles[part.rows])
         for group in system.groups
@@ -33,8 +39,7 @@ def loose_ends(system: System) -> list[str]:
         for part in group.parts
         if part.rows.stop - part.rows.start > 1
     ]
-    loose = _loose(system) if lines else np.zeros(0, bool)
-    if not loose.any():
+    if not lines:
         return []
     from hookean.system.near_misses import Force
 
@@ -54,17 +59,6 @@ def _aside(force: Force, near: Near, own: Ints) -> Floats:
     way = x[p] - x[np.where(ends[:, 0] == p, ends[:, 1], ends[:, 0])]
     long = np.where(force.along[own] > 0.0, force.along[own], np.inf)
     return np.asarray(lengths(np.cross(way, gap)) / long / long)
-
-
-def _loose(system: System) -> NDArray[np.bool_]:
-    """Which particles are of one element alone, and held by nothing."""
-    counts = np.zeros(len(system.x), np.int64)
-    for group in system.groups:
-        if group.cls.role != "load":
-            counts += np.bincount(group.particles.ravel(), minlength=len(counts))
-    for anchor in system.held:
-        counts[anchor.particles] = 0
-    return np.asarray(counts == 1)
 
 
 def _sentence(force: Force, loose: NDArray[np.bool_]) -> str:

@@ -40,6 +40,22 @@ class Held:
     name: str = ""
     turning: Floats = field(default_factory=lambda: np.ones(3))  # (3,) 0 where rotations are held
 
+    # lists: numpy takes five times as long to look at three numbers
+    @property
+    def whole(self) -> bool:
+        """Whether it holds all axes."""
+        return not any(self.free.tolist())
+
+    @property
+    def some(self) -> bool:
+        """Whether it holds any axis."""
+        return not all(self.free.tolist())
+
+    @property
+    def turns(self) -> bool:
+        """Whether it holds rotations."""
+        return not all(self.turning.tolist())
+
 
 @dataclass
 class System:
@@ -110,7 +126,10 @@ class System:
     @property
     def films(self) -> Films | None:
         """Its soap films, and what counts at their particles; None where there are none."""
-        if not any(g.cls.is_film and len(g.block.indices) for g in self.groups):
+        for group in self.groups:
+            if group.cls.is_film and len(group.block.indices):
+                break
+        else:
             return None
         from hookean.films import Films
 
@@ -225,9 +244,9 @@ class System:
         self._components = None  # a patch may have changed which elements belong together
         held, mass = np.zeros(len(self.x), dtype=bool), self.mass.copy()
         for anchor in self.held:
-            if (anchor.free == 0).all():
+            if anchor.whole:
                 mass[anchor.particles] = np.inf
-            if anchor.number >= 0 and (anchor.free == 0).any():
+            if anchor.number >= 0 and anchor.some:
                 held[anchor.particles] = True
         for group in self.groups:
             group.cls.brace(group.block, held, mass)
@@ -276,9 +295,8 @@ def widen(points, box):  # type: ignore[no-untyped-def]
 
 def hold(state: State, anchor: Held, slots: Slots) -> None:
     """Hold an anchor's particles at its targets, on its axes, and their rotations as they are."""
-    held, particles = anchor.free == 0, anchor.particles
-    whole = bool(held.all())
-    if len(slots) and not anchor.turning.all():
+    held, particles, whole = anchor.free == 0, anchor.particles, anchor.whole
+    if len(slots) and anchor.turns:
         turned = slots.rows(particles)
         for values in (state.free, state.v):
             values[turned[turned >= 0]] *= anchor.turning
@@ -320,7 +338,8 @@ def compile(scene: Scene, *, empty: bool = False) -> System:
         mass[: len(scene.masses)] = scene.masses
     else:
         mass[:] = scene.masses
-    mass[slots.first] = mass[slots.particles]
+    if len(slots):
+        mass[slots.first] = mass[slots.particles]
     held = _anchors(welded)
     welded.report.settle(strict=scene.strict, held=any(len(anchor.particles) for anchor in held))
     carried = [_carried(welded, i) for i in range(len(scene.geometry))]

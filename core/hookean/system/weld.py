@@ -64,11 +64,12 @@ class Welded:
         for force in self.scene.forces:
             if not force.creates:
                 continue
+            fields = vars(force)  # asking a model for what it has not takes long
             for name in ("points", "lines"):
-                points = getattr(force, name, None)
+                points = fields.get(name)
                 if points is not None:
                     add("force", id(force), points)
-            mesh = getattr(force, "mesh", None)
+            mesh = fields.get("mesh")
             if mesh is not None and not any(o[:2] == ("mesh", mesh) for o in owners):
                 add("mesh", mesh, self.scene.meshes[mesh].vertices)
         points = np.concatenate(candidates) if candidates else np.zeros((0, 3))
@@ -87,7 +88,8 @@ class Welded:
         """Particles of every element of `force`, `(m, arity)`; -1 where a load or anchor met none."""
         arity = force.element_arity
         pointer = self._pointer.get(id(force), "/settings/floor")
-        particles = getattr(force, "particles", None)
+        fields = vars(force)
+        particles = fields.get("particles")
         if particles is not None:
             rows: Ints = particles.reshape(-1, 1) if arity == 1 and particles.ndim == 1 else particles
             if not particles.size:
@@ -99,14 +101,14 @@ class Welded:
                 )
             return rows
         for name in ("points", "lines"):
-            points = getattr(force, name, None)
+            points = fields.get(name)
             if points is not None:
                 if id(force) not in self._rows:
                     self._rows[id(force)] = self.meet(points)
                 rows = self._rows[id(force)]
                 flat = rows.reshape(len(points), -1) if len(points) else np.zeros((0, arity), np.int64)
                 return self._checked(flat, arity, f"{pointer}/{name}")
-        mesh = getattr(force, "mesh", None)
+        mesh = fields.get("mesh")
         if mesh is not None:
             return self._of_mesh(force, mesh, arity)
         return np.arange(len(self.x)).reshape(-1, 1)
@@ -231,7 +233,7 @@ class Welded:
         """Report the points, lines or vertices of a force that met no particle."""
         kinds: tuple[tuple[str, Literal["point", "line"]], ...] = (("points", "point"), ("lines", "line"))
         for name, what in kinds:
-            points = vars(force).get(name)  # asking a model for what it has not takes long
+            points = vars(force).get(name)
             if points is not None and id(force) in self._rows:
                 self.check(f"{pointer}/{name}", force.name, points, self._rows[id(force)], what, force.role)
                 if not force.creates:
@@ -363,10 +365,10 @@ def fits(force: Force, pointer: str, welded: Welded) -> None:
     columns = element_columns(type(force))
     if not columns or (force.element_arity > 2 and getattr(force, "mesh", None) is not None):
         return
-    count = len(welded.elements(force))
-    for name, vector in columns:
-        value = getattr(force, name)
-        if isinstance(value, np.ndarray) and len(value) != count and not (vector and value.shape == (3,)):
+    count, given = len(welded.elements(force)), vars(force)
+    for name, vector in [column for column in columns if isinstance(given[column[0]], np.ndarray)]:
+        value = given[name]
+        if len(value) != count and not (vector and value.shape == (3,)):
             allowed = "one for each" if _is_a(type(force), name, _EACH) else "one value or one for each"
             raise InputError(f"{pointer}/{name}", f"{len(value)} values for {count} elements; give {allowed}")
 
