@@ -90,6 +90,23 @@ def test_many_names_are_counted() -> None:
     assert message.endswith("position 10, position 11 and 2 more.")
 
 
+def test_a_variable_far_beyond_its_size_is_reported() -> None:
+    """An arch of least load path whose joints are free in plan: loads move to the supports as densities grow without
+    end, and what is left, 0.01 N/m of the one link between them along 10 m, is 1 N m; a bound ends their way."""
+    links = {"kind": "springs", "name": "arch", "particles": [[i, i + 1] for i in range(4)], "rest_length": 0.0}
+    scene = {
+        "particles": [[2.5 * i, 0, 0] for i in range(5)],
+        "forces": [{**links, "stiffness": 5.0}, {"kind": "unary", "particles": [1, 2, 3], "vector": [0, 0, 3]}],
+        "anchors": [{"particles": [0, 4]}],
+    }
+    goal = {"kind": "load_path", "force": "arch"}
+    for upper, far in ((None, 1), (100.0, 0)):
+        density = {"force": "arch", "field": "stiffness", "lower": 0.01, "upper": upper}
+        found = hookean.design({"scene": scene, "variables": [density], "goals": [goal]})
+        assert found.status == "converged" and (found.objective < 1.01) is (upper is None)
+        assert sum(said.startswith("arch.stiffness went beyond 1000 times") for said in found.warnings) == far
+
+
 def test_no_tolerance_or_weight_makes_a_search_warn() -> None:
     """What settings allow gives no warnings of libraries, and the same rest length."""
     extremes: list[dict[str, Any]] = [{"settings": {"tolerance": 1e-300}}]

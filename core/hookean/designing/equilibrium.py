@@ -33,7 +33,7 @@ Ints = NDArray[np.int64]
 TIGHT = 1e-11  # residual [-] to which shapes are brought
 NEAR = 1e-6, 1e-8  # residuals [-] from which exact steps are tried first
 SOFTER = 1e-6  # part of the stiffness by which yielding differs from rounding
-SLIGHT = 1e-8  # part of the model's size: a step after which the tangent is the same
+SLIGHT, NONE = 1e-8, 1e-11  # parts of the model's size: steps after which no other is needed, or no other tangent
 NOTHING = 1e-15  # part of the diagonal: entries of the tangent that are rounding
 POLISH = 6  # exact steps after that, while each leaves less
 ROUNDING = 10.0  # times the rounding floor: what is out of balance there is rounding
@@ -294,8 +294,10 @@ def _polished(found: Equilibrium) -> tuple[Equilibrium, float]:
             state.x = start
             break
         left = now
-        slight = lengths(step).max(initial=0.0) <= SLIGHT * system.size
+        length = lengths(step).max(initial=0.0) / system.size
+        slight = length <= SLIGHT
         if slight and once:
+            found = found.again() if length > NONE else found
             break
         if not slight:
             before, found = found, found.again()

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 Floats = NDArray[np.float64]
 
+FAR = 1e3  # of its size: an unknown there that is no minimum has no end
 LIMIT = 1e-6  # part of the size of values by which a constraint may be missed
 AT_BOUND = 1e-9  # of an unknown's scale
 

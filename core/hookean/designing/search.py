@@ -18,7 +18,7 @@ from hookean.designing.answer import Design, DesignStatus
 from hookean.designing.equilibrium import Equilibrium, follow, settle
 from hookean.designing.factors import Orders
 from hookean.designing.gains import at_minimum
-from hookean.designing.limits import LIMIT, beyond, size
+from hookean.designing.limits import FAR, LIMIT, beyond, size
 from hookean.designing.linearised import Linearised
 from hookean.designing.located import system_of
 from hookean.designing.methods import METHODS, Stopped, Unbounded
@@ -34,7 +34,6 @@ from hookean.system.system import System
 
 Floats = NDArray[np.float64]
 EDGE = 1e6  # of its size: no search goes further
-FAR = 1e3  # of its size: an unknown there that is no minimum has no end
 LIMITS = 100  # values of constraints, four times as many where goals have no roots, above which SLSQP takes long
 SLACK = 2e-6  # part of the objective, by which the best may seem better than where a method rests
 MANY = 40  # unknowns and values of goals, above which derivatives are not dense

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from hookean.designing.answer import Design, DesignStatus, once
 from hookean.designing.gains import Gains, gains
-from hookean.designing.limits import AT_BOUND, LIMIT, beyond
+from hookean.designing.limits import AT_BOUND, FAR, LIMIT, beyond
 from hookean.designing.second_look import UNMOVED, not_found_again
 from hookean.designing.sensitivity import gradients, warnings
 
@@ -55,8 +55,24 @@ def answer(search: Search, method: str, iterations: int, ended: DesignStatus, sa
         constraints=_constraints(search, found, gained),
         result=found.result,
         scene=scene,
-        warnings=warnings(found) + search.unknowns.differing + _out_of_reach(search, found, goals) + again,
+        warnings=[
+            *warnings(found),
+            *search.unknowns.differing,
+            *_out_of_reach(search, found, goals),
+            *(_far(search, y) if ended is DesignStatus.CONVERGED else []),
+            *again,
+        ],
     )
+
+
+def _far(search: Search, y: Floats) -> list[str]:
+    """A sentence for each variable that went far where no bound ends its way: the least may be nowhere."""
+    low, high = search.bounds
+    far = (np.abs(y) > FAR) & ~np.isfinite(np.where(y > 0.0, high, low))
+    parts = zip(search.unknowns.names, search.unknowns.slices, strict=True)
+    names = [name for name, part in parts if far[part].any()]
+    said = f"went beyond {FAR:g} times its size, where the objective hardly falls any more; give it bounds"
+    return [f"{name} {said}" for name in names]
 
 
 def _out_of_reach(search: Search, found: Equilibrium, goals: Entries) -> list[str]:

@@ -162,7 +162,8 @@ class Unknowns:
         except (TypeError, ValueError, OverflowError):
             given = np.zeros(0)
         if given.shape != (self.count,) or not np.isfinite(given).all():
-            raise InputError("/start", f"{self.count} finite numbers are expected, one for each unknown")
+            many = f"{self.count} finite number{'s' * (self.count != 1)}"
+            raise InputError("/start", f"{many} expected, one for each unknown")
         self.start = np.clip(given, self.lower, self.upper)
 
     @property
