@@ -101,6 +101,18 @@ def box_distance(t, row, p) -> Any:  # type: ignore[no-untyped-def]
 
 
 @device
+def beyond_triangle(t, row, p) -> Any:  # type: ignore[no-untyped-def]
+    # squared distance of the box about a triangle to p, 0 inside: many times quicker than that of the triangle
+    apart = 0.0
+    for c in range(3):
+        low = min(t[row, c], t[row, 3 + c], t[row, 6 + c])
+        high = max(t[row, c], t[row, 3 + c], t[row, 6 + c])
+        out = max(low - p[c], p[c] - high, 0.0)
+        apart += out * out
+    return apart
+
+
+@device
 def closest(t, p, at, axis, room, stack, most) -> Any:  # type: ignore[no-untyped-def]
     # closest point `at` to p of the triangles in a tree's table; equal distances: the triangle given first.
     # Returns which part of which triangle is closest, as `on_triangle`. `room` (4, 3) and `stack` are to work in.
@@ -130,6 +142,8 @@ def closest(t, p, at, axis, room, stack, most) -> Any:  # type: ignore[no-untype
             top += 2
             continue
         for row in range(start, start + count):
+            if beyond_triangle(t, row, p) > best * (1.0 + 1e-12):
+                continue
             apart, which = on_triangle(t, row, p, found, found_axis, room[2], room[3])
             if apart < best or (apart == best and t[row, 9] < first):
                 best = apart
