@@ -26,7 +26,7 @@ from hookean.scene.load_cases import IDLE, PERMANENT, PRESTRESS, LoadCase, case_
 from hookean.scene.scene import Scene
 from hookean.solvers import solver
 from hookean.system.state import State
-from hookean.system.system import System, compile
+from hookean.system.system import System, a_scene, compile
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -144,6 +144,7 @@ def load_cases(
 
 def wanted(scene: Scene, names: Sequence[str] | None) -> list[str]:
     """The names of all load cases and combinations of a scene, or those given; InputError if the scene has none."""
+    scene = a_scene(scene)
     if not scene.load_cases and not scene.combinations:
         said = 'the scene has none; add them, as in "load_cases": {"snow": {"forces": ["snow load"]}}'
         raise InputError("/load_cases", said)

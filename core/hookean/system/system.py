@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -286,13 +286,18 @@ def hold(state: State, anchor: Held, slots: Slots) -> None:
         values[particles] = there if whole else np.where(held, there, values[particles])
 
 
+def a_scene(given: Any) -> Scene:
+    """What is given, if it is a scene; else InputError."""
+    if not isinstance(given, Scene):
+        said = f"a Scene is expected, not a {type(given).__name__}; make one with hookean.Scene.read(...)"
+        raise InputError("scene", said)
+    return given
+
+
 def compile(scene: Scene, *, empty: bool = False) -> System:
     """Compile a scene; raises InputError if its parts are inconsistent, it is not a Scene, or it has no particles,
     unless it may be `empty`, as one that is about to be drawn."""
-    if not isinstance(scene, Scene):
-        said = f"a Scene is expected, not a {type(scene).__name__}; make one with hookean.Scene.read(...)"
-        raise InputError("scene", said)
-    welded = Welded(scene)
+    welded = Welded(a_scene(scene))
     if not len(welded.x) and not empty:
         said = "the scene has no particles; give particles, or a force with lines or a mesh"
         if scene.forces:
