@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+
+SUNK = 1e-9  # part of the size of a model below a contact that may be rounding
 
 
 @dataclass
@@ -145,6 +147,17 @@ class System:
         for group in self.contacts:
             hook = dispatch.compiled(group.cls.impact, "impact")
             hook(x, v, v, x, v, free, 0.0, group.block.parameters)
+
+    def sunk(self, state: State) -> tuple[int, float]:
+        """The particle that lies deepest where contacts do not allow it, and how deep [length]; (-1, 0) where none lies
+        deeper than rounding brings it."""
+        if not self.contacts:
+            return -1, 0.0
+        other = replace(state, x=state.x.copy(), v=state.v.copy())
+        self.put_outside(other)
+        depth = np.linalg.norm(other.x - state.x, axis=1)[: self.slots.count]
+        deepest = int(np.argmax(depth))
+        return (deepest, float(depth[deepest])) if depth[deepest] > SUNK * self.size else (-1, 0.0)
 
     def evaluate(
         self, state: State, *, only: str = "", still: bool = True, loads: Floats | None = None
