@@ -64,7 +64,7 @@ def test_loads_of_cases_are_not_taken_for_none() -> None:
         hookean.buckling(column())
     with pytest.raises(InputError, match="loads: P: of load cases, which do not act by themselves"):
         hookean.load_path(column(), loads=["dead", "P"])
-    with pytest.raises(InputError, match="cases: 'snow' is not a load case or combination; the scene has P, Q, ULS"):
+    with pytest.raises(InputError, match="case: 'snow' is not a load case or combination; the scene has P, Q, ULS"):
         hookean.load_path(column(), case="snow")
 
 

@@ -142,8 +142,9 @@ def load_cases(
     return LoadCases(frozen, dict(zip(chosen, found, strict=True)))
 
 
-def wanted(scene: Scene, names: Sequence[str] | None) -> list[str]:
-    """The names of all load cases and combinations of a scene, or those given; InputError if the scene has none."""
+def wanted(scene: Scene, names: Sequence[str] | None, pointer: str = "cases") -> list[str]:
+    """The names of all load cases and combinations of a scene, or those given, at `pointer`; InputError if the scene
+    has none."""
     scene = a_scene(scene)
     if not scene.load_cases and not scene.combinations:
         said = 'the scene has none; add them, as in "load_cases": {"snow": {"forces": ["snow load"]}}'
@@ -151,10 +152,10 @@ def wanted(scene: Scene, names: Sequence[str] | None) -> list[str]:
     known = [*scene.load_cases, *scene.combinations]
     given = [names] if isinstance(names, str) else known if names is None else names
     if not len(given):
-        raise InputError("cases", f"none given; give some of {', '.join(known)}, or leave it out for all")
+        raise InputError(pointer, f"none given; give some of {', '.join(known)}, or leave it out for all")
     for name in given:
         if name not in known:
-            raise InputError("cases", f"{name!r} is not a load case or combination; the scene has {', '.join(known)}")
+            raise InputError(pointer, f"{name!r} is not a load case or combination; the scene has {', '.join(known)}")
     return list(dict.fromkeys(given))
 
 
@@ -216,7 +217,7 @@ def growing(scene: Scene, loads: Sequence[str] | None, case: str | None) -> tupl
     if case is None:
         system = compile(scene)
         return system, system.start(), load_numbers(scene, loads)
-    (name,) = wanted(scene, case)
+    (name,) = wanted(scene, case, "case")
     frozen = freeze(scene)
     own = case_scene(frozen, name)
     return *frozen.system(own), load_numbers(own, loads)
