@@ -9,6 +9,7 @@ import pytest
 
 import hookean
 from hookean import InputError, Scene
+from hookean.files.report import report
 
 LENGTH, PARTS, EI = 3.0, 8, 210e9 * np.pi / 64.0 * (0.06**4 - 0.054**4)
 EULER = np.pi**2 * EI / LENGTH**2
@@ -63,7 +64,7 @@ def test_loads_of_cases_are_not_taken_for_none() -> None:
         hookean.buckling(column())
     with pytest.raises(InputError, match="loads: P: of load cases, which do not act by themselves"):
         hookean.load_path(column(), loads=["dead", "P"])
-    with pytest.raises(InputError, match="cases: 'snow' is not a load case or combination; the scene has P, Q, ULS"):
+    with pytest.raises(InputError, match="case: 'snow' is not a load case or combination; the scene has P, Q, ULS"):
         hookean.load_path(column(), case="snow")
 
 
@@ -96,3 +97,15 @@ def test_the_load_path_of_a_case_goes_through_its_equilibrium() -> None:
     assert path.loads == ("snow",) and path.factors[-1] == pytest.approx(1.0, abs=1e-12)
     np.testing.assert_allclose(path.particles[0], cases.form.particles, atol=1e-9)
     np.testing.assert_allclose(path.particles[-1], cases.cases["snow"].result.particles, atol=1e-6)
+
+
+def test_what_is_no_scene_is_named() -> None:
+    """A result or the cases themselves, where a scene is meant."""
+    scene = column()
+    result, cases = hookean.relax(scene), hookean.load_cases(scene, ["P"])
+    wanted = "scene: a Scene is expected, not a Result"
+    for asked in (hookean.load_cases, report, hookean.cables, lambda given: hookean.buckling(given, case="P")):
+        with pytest.raises(InputError, match=wanted):
+            asked(result)
+    with pytest.raises(InputError, match="scene: a Scene is expected, not a LoadCases"):
+        hookean.cables(cases)

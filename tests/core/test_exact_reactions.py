@@ -85,3 +85,24 @@ def test_so_do_those_of_load_cases(kind: str) -> None:
     for case in load_cases(portal(kind, **more)).cases.values():
         assert case.result.converged
         assert_balanced(case.result)
+
+
+def test_a_floor_that_nothing_touches_takes_no_step_away() -> None:
+    """A cable above a floor, to the tolerance of 1e-6; the exact steps of its case make reactions balance to 1e-12, as
+    without the floor. Where the cable lies on the floor there are none, and the result is within the tolerance."""
+    spec: dict[str, Any] = {
+        "particles": [[0, 0, 0.2], [1, 0, 0.5], [2, 0, 0.2]],
+        "forces": [
+            {"kind": "springs", "particles": [[0, 1], [1, 2]], "axial_stiffness": 500},
+            {"kind": "unary", "name": "push", "particles": [1], "vector": [0, 0, -400]},
+            {"kind": "floor"},
+        ],
+        "anchors": [{"particles": [0, 2]}],
+        "load_cases": {"one": {"forces": ["push"]}},
+    }
+    low, deep = spec, {**spec, "forces": [*spec["forces"][:2], {"kind": "floor", "point": [0, 0, -3]}]}
+    lying, above = (load_cases(Scene.read(of)).cases["one"].result for of in (low, deep))
+    assert len(above.contacts["force"]) == 0 and len(lying.contacts["force"]) == 1
+    assert_balanced(above)
+    whole = sum(np.sum(of, axis=0) for of in (lying.reactions["force"], lying.loads["resultant"]))
+    assert np.abs(whole + np.sum(lying.contacts["force"], axis=0)).max() <= 400.0 * 1e-6

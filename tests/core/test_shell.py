@@ -178,7 +178,8 @@ def inside(corners: np.ndarray, x: np.ndarray, margin: float) -> np.ndarray:
 @pytest.mark.parametrize("curvature", CURVATURES, ids=str)
 @pytest.mark.parametrize("seed", [0, 1, 2])
 def test_constant_curvature_is_exact_and_in_balance_on_any_mesh(curvature: np.ndarray, seed: int) -> None:
-    """z = e x.K x / 2 on a jittered mesh: every triangle away from the sides has the moment D e |K|, no force is left.
+    """z = e x.K x / 2 on a jittered mesh: every triangle away from the sides has the moment D e k, k the
+    larger principal curvature of K, and no force is left.
 
     e = 1e-5: the fold angles are linear in it to e^2 = 1e-10, and rounding of angles is eps / e = 2e-11.
     """

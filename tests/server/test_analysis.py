@@ -71,6 +71,27 @@ def test_masses_of_a_request_are_those_of_the_function(client: httpx.Client) -> 
     assert problem(answer, 422, "invalid-input")["errors"][0]["pointer"] == "/masses"
 
 
+def test_a_case_of_a_request_is_that_of_the_function(client: httpx.Client) -> None:
+    """Buckling of a combination, of a column whose loads are in cases; its name has a place in the request."""
+    column = {
+        "particles": [[0, 0, 0], [0, 0, 1], [0, 0, 2]],
+        "forces": [
+            {"kind": "beam", "particles": [[0, 1], [1, 2]], "E": 1e6, "G": 4e5, "A": 1, "Iy": 0.01, "Iz": 0.01}
+            | {"J": 0.02},
+            {"kind": "unary", "name": "P", "particles": [2], "vector": [0, 0, -10]},
+        ],
+        "anchors": [{"particles": [0], "rotations": "xyz"}],
+        "load_cases": {"P": {"forces": ["P"]}},
+        "combinations": {"ULS": {"P": 1.5}},
+    }
+    one = client.post("/v1/analysis/buckling", json={"scene": column, "count": 1, "case": "ULS"}).json()
+    wanted = hookean.buckling(hookean.Scene.read(column), 1, case="ULS")
+    assert one["factors"] == pytest.approx(wanted.factors.tolist(), rel=1e-12) and one["loads"] == ["P"]
+    for change, pointer in (({"case": "snow"}, "/case"), ({}, "/loads")):
+        answer = client.post("/v1/analysis/buckling", json={"scene": column, **change})
+        assert problem(answer, 422, "invalid-input")["errors"][0]["pointer"] == pointer
+
+
 def test_load_cases_are_those_of_the_function(client: httpx.Client) -> None:
     """Each on a worker of its own, with the bits of one after another."""
     answer = client.post("/v1/analysis/load-cases", json=CASES_EXAMPLE)

@@ -31,7 +31,7 @@ from hookean.stability.equilibrium import assess
 from hookean.system.balance import balance
 from hookean.system.group import Part
 from hookean.system.state import State
-from hookean.system.system import System, compile
+from hookean.system.system import System, a_scene, compile
 
 Floats = NDArray[np.float64]
 
@@ -106,7 +106,7 @@ def freeze(scene: Scene) -> Frozen:
     Source: Schek, The force density method for form finding, 1974; Barnes, Form finding and analysis of tension
     structures by dynamic relaxation, 1999.
     """
-    stages = scene.stages or Stages()
+    stages = a_scene(scene).stages or Stages()
     system, state, form = _form(scene, stages)
     notes = list[str]()
     if system.films is not None:

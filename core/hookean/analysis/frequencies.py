@@ -148,6 +148,7 @@ def _weighed(rest: AtRest) -> Floats:
             continue
         for part in group.parts:
             block, force = group.of(part), part.force
+            assert isinstance(force, SelfWeight)
             g = gravity(system.scene.units) if force.gravity is None else force.gravity
             weight = np.linalg.norm(block.parameters[:, :3], axis=1)
             found += np.bincount(block.indices[:, 0], weight / g if g > 0.0 else 0.0 * weight, len(found))

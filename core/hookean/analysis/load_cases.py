@@ -26,7 +26,7 @@ from hookean.scene.load_cases import IDLE, PERMANENT, PRESTRESS, LoadCase, case_
 from hookean.scene.scene import Scene
 from hookean.solvers import solver
 from hookean.system.state import State
-from hookean.system.system import System, compile
+from hookean.system.system import System, a_scene, compile
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -142,18 +142,20 @@ def load_cases(
     return LoadCases(frozen, dict(zip(chosen, found, strict=True)))
 
 
-def wanted(scene: Scene, names: Sequence[str] | None) -> list[str]:
-    """The names of all load cases and combinations of a scene, or those given; InputError if the scene has none."""
+def wanted(scene: Scene, names: Sequence[str] | None, pointer: str = "cases") -> list[str]:
+    """The names of all load cases and combinations of a scene, or those given, at `pointer`; InputError if the scene
+    has none."""
+    scene = a_scene(scene)
     if not scene.load_cases and not scene.combinations:
         said = 'the scene has none; add them, as in "load_cases": {"snow": {"forces": ["snow load"]}}'
         raise InputError("/load_cases", said)
     known = [*scene.load_cases, *scene.combinations]
     given = [names] if isinstance(names, str) else known if names is None else names
     if not len(given):
-        raise InputError("cases", f"none given; give some of {', '.join(known)}, or leave it out for all")
+        raise InputError(pointer, f"none given; give some of {', '.join(known)}, or leave it out for all")
     for name in given:
         if name not in known:
-            raise InputError("cases", f"{name!r} is not a load case or combination; the scene has {', '.join(known)}")
+            raise InputError(pointer, f"{name!r} is not a load case or combination; the scene has {', '.join(known)}")
     return list(dict.fromkeys(given))
 
 
@@ -215,7 +217,7 @@ def growing(scene: Scene, loads: Sequence[str] | None, case: str | None) -> tupl
     if case is None:
         system = compile(scene)
         return system, system.start(), load_numbers(scene, loads)
-    (name,) = wanted(scene, case)
+    (name,) = wanted(scene, case, "case")
     frozen = freeze(scene)
     own = case_scene(frozen, name)
     return *frozen.system(own), load_numbers(own, loads)

@@ -20,7 +20,7 @@ from hookean.running.result import Result
 from hookean.running.run import relax
 from hookean.running.utilisation import dimensions, missing
 from hookean.scene.scene import Scene
-from hookean.system.system import System, compile
+from hookean.system.system import System, a_scene, compile
 
 SIZE = (1000, 750)  # pixels of a picture
 MOST = 60  # rows of a table
@@ -71,7 +71,7 @@ def reported(
     of this scene that are solved already are not solved again; else `processes` solve them side by side.
     Raises InputError where the scene cannot be relaxed or frozen, or a limit names what it does not have.
     """
-    if cases is None and (scene.load_cases or scene.combinations):
+    if cases is None and (a_scene(scene).load_cases or scene.combinations):
         cases = load_cases(scene, processes=processes)
     form = cases.form if cases is not None else relax(scene)
     parts = [f"<h1>{escape(title)}</h1>", *_scene(scene, form), *_form(scene, form, pictures)]

@@ -100,6 +100,8 @@ def _obstacle(watch: Watch, system: System) -> str:
             "position_tolerance allows: the structure is close to an instability. Stiffen it, or raise "
             "position_tolerance"
         )
+    if watch.method.name == "newton" and system.contacts:
+        return "Newton steps end where a particle comes to a floor: use auto, which goes on from there"
     if any(np.any(force.moment) for force in system.scene.forces if isinstance(force, Unary)):
         return (
             "A moment keeps its direction and has no energy, so a shape that it bends far may not come to rest. "

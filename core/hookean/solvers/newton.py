@@ -78,7 +78,11 @@ class Method(Solver):
             needed |= shift > asked
             if step is None:
                 break
+            before = state.x
             length, after = _search(system, state, step, now, strict=turns is not None)
+            if length > 0.0 and system.sunk(state)[0] >= 0:
+                state.x = before  # where it comes to lie on a floor is for other solvers to find
+                break
             if again is not None and length == 0.0:
                 continue  # the tangent has changed, after all
             near = length == 1.0 and turns is None and np.abs(step).max() <= NEAR * system.size

@@ -43,7 +43,7 @@ def finer(system: System, state: State, found: Balance, method: Solver) -> Balan
         state.x = before + step
         system.slots.fold(state)
         there = balance(system, state)
-        if not np.abs(there.forces).max(initial=0.0) < largest:  # not a number either
+        if not np.abs(there.forces).max(initial=0.0) < largest or there.contact.any():  # not a number either
             state.x = before
             return found
         found = there
@@ -76,7 +76,8 @@ def exact_reactions(system: System, state: State, found: Balance, method: Solver
 def _exact_step(system: System, state: State, found: Balance, method: Solver, *, steps: bool = False) -> Floats | None:
     """The movement (n, 3) that would end what is out of balance: K dx = r; None where no such step is known. `steps`:
     whether a tangent that Newton steps can use is enough."""
-    plain = system.films is None and not system.contacts and not system.no_tangent(sparse=False, steps=steps)
+    carried = bool(system.contacts) and found.contact.any()  # what lies on floors may come off them
+    plain = system.films is None and not carried and not system.no_tangent(sparse=False, steps=steps)
     free, _ = movable(system, state, found)
     if not plain or np.count_nonzero(free) > LARGEST_FACTOR:
         return None

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,6 +27,8 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
+
+SUNK = 1e-9  # part of the size of a model below a contact that may be rounding
 
 
 @dataclass
@@ -164,6 +166,17 @@ class System:
         for group in self.contacts:
             hook = dispatch.compiled(group.cls.impact, "impact")
             hook(x, v, v, x, v, free, 0.0, group.block.parameters)
+
+    def sunk(self, state: State) -> tuple[int, float]:
+        """The particle that lies deepest where contacts do not allow it, and how deep [length]; (-1, 0) where none lies
+        deeper than rounding brings it."""
+        if not self.contacts:
+            return -1, 0.0
+        other = replace(state, x=state.x.copy(), v=state.v.copy())
+        self.put_outside(other)
+        depth = np.linalg.norm(other.x - state.x, axis=1)[: self.slots.count]
+        deepest = int(np.argmax(depth))
+        return (deepest, float(depth[deepest])) if depth[deepest] > SUNK * self.size else (-1, 0.0)
 
     def evaluate(
         self, state: State, *, only: str = "", still: bool = True, loads: Floats | None = None
@@ -304,13 +317,18 @@ def hold(state: State, anchor: Held, slots: Slots) -> None:
         values[particles] = there if whole else np.where(held, there, values[particles])
 
 
+def a_scene(given: Any) -> Scene:
+    """What is given, if it is a scene; else InputError."""
+    if not isinstance(given, Scene):
+        said = f"a Scene is expected, not a {type(given).__name__}; make one with hookean.Scene.read(...)"
+        raise InputError("scene", said)
+    return given
+
+
 def compile(scene: Scene, *, empty: bool = False) -> System:
     """Compile a scene; raises InputError if its parts are inconsistent, it is not a Scene, or it has no particles,
     unless it may be `empty`, as one that is about to be drawn."""
-    if not isinstance(scene, Scene):
-        said = f"a Scene is expected, not a {type(scene).__name__}; make one with hookean.Scene.read(...)"
-        raise InputError("scene", said)
-    welded = Welded(scene)
+    welded = Welded(a_scene(scene))
     if not len(welded.x) and not empty:
         said = "the scene has no particles; give particles, or a force with lines or a mesh"
         if scene.forces:

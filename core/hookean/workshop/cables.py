@@ -92,7 +92,7 @@ def cables(model: Scene | Frozen, *, stretch: float = 0.0, fitting: float = 0.0)
     for place, value in (("stretch", stretch), ("fitting", fitting)):
         if not (np.isfinite(value) and value >= 0.0):
             raise InputError(place, f"{value!r} given; a number of at least 0 is expected")
-    frozen = freeze(model) if isinstance(model, Scene) else model
+    frozen = model if isinstance(model, Frozen) else freeze(model)
     system, state = frozen.system()
     held = np.flatnonzero((state.free == 0.0).all(axis=1))
     found: list[Cable] = []
