@@ -97,7 +97,7 @@ def roof(studio: Studio, folder: Path, see: See) -> tuple[str, str]:
     studio.until(lambda: service.scene(first)["forces"][-1]["kind"] == "area_weight")
     solved(studio)
     see("roof-snow")
-    opened(studio, "Out")
+    opened(studio, "Save and export")
     with page.expect_download() as saving:
         studio.press("Save")
     file = folder / saving.value.suggested_filename
@@ -143,7 +143,7 @@ def film(studio: Studio, see: See) -> str:
     made(studio, "Catenoid", Rays="24", Rings="8")
     solved(studio)
     see("film-form")
-    opened(studio, "Picked")
+    opened(studio, "Selection")
     studio.press("Front")
     page.get_by_text("Select several").click()
     studio.press("Box")
@@ -247,7 +247,7 @@ def imported(studio: Studio, file: Path, folder: Path, see: See) -> Path:
     studio.drawing()
     solved(studio)
     see("import-form")
-    opened(studio, "Out")
+    opened(studio, "Save and export")
     with page.expect_download() as saving:
         studio.press("Rhino .3dm")
     saved = folder / "relaxed.3dm"

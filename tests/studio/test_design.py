@@ -149,7 +149,7 @@ def test_a_problem_is_saved_with_the_model_and_opened_again(cable: Studio, tmp_p
     page = cable.page
     vary(cable, "cable rest factor", At_least="0.5", At_most="1.5")
     ask(cable, "goal", "Position", Particles="4", Axes="z")
-    opened(cable, "Out")
+    opened(cable, "Save and export")
     with page.expect_download() as saved:
         cable.press("Save")
     file = tmp_path / "cable.hookean"

@@ -80,7 +80,7 @@ def test_a_net_is_drawn_by_clicks_held_loaded_and_solved(studio: Studio) -> None
     mine = studio.service.particles(studio.key)
     order = [np.lexsort(np.round(shape[:, :2], 3).T) for shape in (mine, truth)]
     assert np.abs(mine[order[0]] - truth[order[1]]).max() < 1e-4  # of 4 m; both to the accuracy of a run
-    opened(studio, "See")
+    opened(studio, "Display")
     page.get_by_label("Labels", exact=True).select_option(label="Names")
     page.get_by_role("img", name="Written beside the form: edge").wait_for()
     page.get_by_label("Section plane", exact=True).select_option("x")
@@ -181,7 +181,7 @@ def test_an_obj_file_gets_roles_and_its_recipe_is_kept(open_studio: Opened, tmp_
     assert not violations(studio)
     studio.press("Make the model")
     studio.drawing()
-    opened(studio, "Out")
+    opened(studio, "Save and export")
     page.get_by_text("Recipe of net.obj").click()
     recipe = page.get_by_label("Recipe of the file").input_value()
     truth = read(OBJ, "net.obj", (recipe, "")).scene
@@ -199,7 +199,7 @@ def test_an_obj_file_gets_roles_and_its_recipe_is_kept(open_studio: Opened, tmp_
     page.get_by_label("File to open").set_input_files(tmp_path / "net.hookean")
     page.wait_for_url(lambda url: re.search(r"#s=[0-9a-f]{32}$", url) is not None and first not in url)
     studio.drawing()
-    opened(studio, "Out")
+    opened(studio, "Save and export")
     page.get_by_text("Recipe of net.obj").click()
     assert page.get_by_label("Recipe of the file").input_value() == recipe
 

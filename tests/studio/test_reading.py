@@ -176,7 +176,7 @@ def test_a_recording_is_scrubbed_charted_and_saved(studio: Studio, tmp_path: Pat
     page.get_by_role("list", name="Bookmarks").get_by_role("button", name="flat", exact=True).click()
     studio.until(lambda: np.abs(studio.particles() - start).max() < 1e-4)
 
-    unfold(studio, "Out")  # a file has both, too, beside what other programs read in it
+    unfold(studio, "Save and export")  # a file has both, too, beside what other programs read in it
     with page.expect_download() as saving:
         studio.press("Save")
     file = tmp_path / "recorded.hookean"

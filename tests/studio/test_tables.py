@@ -58,7 +58,7 @@ def test_springs_are_sorted_selected_and_saved(cable: Studio):
 
 
 def test_reactions_are_summed(cable: Studio):
-    """Equilibrium: the reactions together are minus the loads, 6 x 20 N; forces along x cancel, to 0 but for rounding. A
+    """Equilibrium: the reactions together are minus the loads, 6 x 20 N; forces along x cancel, to 0. A
     float32 frame of numbers below 256 N is exact to 2^-17 N each. Before anything is sorted their sizes are counted:
     the two ends bear the same."""
     cable.page.get_by_role("button", name="Reactions", exact=True).click()

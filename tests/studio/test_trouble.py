@@ -164,7 +164,7 @@ def test_a_frame_that_cannot_be_read_is_told_of(tab: Studio):
 
 @pytest.mark.slow
 def test_a_session_that_is_slow_is_told_from_one_that_does_not_answer(tab: Studio):
-    """It plays and no frame comes: with a service that answers it is slow; with one that does not, that is reported; and
+    """It plays and no frame comes: with a service that answers it is slow; with one that does not, it is not; and
     the next frame ends both. The age of what is shown is that of its last frame."""
     service, page = tab.service, tab.page
     service.put("slow", net(4))

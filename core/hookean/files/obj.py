@@ -12,7 +12,7 @@ from hookean.system.system import System
 Floats = NDArray[np.float64]
 LACKS = (
     "An OBJ file stores the shape and the held particles, not forces, loads, stiffness, rest lengths and settings. "
-    "When it is opened again, lines become springs of 1000 N/m as long as drawn, faces membranes."
+    "When it is opened again, lines become springs of 1000 N/m as long as drawn, faces nets that draw tight."
 )
 
 

@@ -100,7 +100,7 @@ export function Change({ studio, pen }: { studio: Studio; pen: Pen }) {
       <p class="note" role="status">
         {counted(particles.length, "particle")}, {counted(springs.length, "spring")} and{" "}
         {counted(count, "face")} selected.
-        Click one, or select more under Picked.
+        Click one, or select more under Selection.
       </p>
       <div class="row">
         <NumberField

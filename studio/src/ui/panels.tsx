@@ -29,7 +29,7 @@ export function Panels({ studio, title }: { studio: Studio; title: string }) {
   const isOwn = !studio.session.readOnly;
   return (
     <aside class="panels" aria-label="Panels">
-      <Panel name="Picked">
+      <Panel name="Selection">
         <PickedPanel studio={studio} />
         <Selected studio={studio} />
         <Measure studio={studio} />
@@ -49,7 +49,7 @@ export function Panels({ studio, title }: { studio: Studio; title: string }) {
           <Forces studio={studio} />
         </Panel>
       )}
-      <Panel name="See">
+      <Panel name="Display">
         <SeePanel studio={studio} />
         <TagsChoice studio={studio} />
         <SectionChoice studio={studio} />
@@ -81,7 +81,7 @@ export function Panels({ studio, title }: { studio: Studio; title: string }) {
           <Compare studio={studio} />
         </Panel>
       )}
-      <Panel name="Out">
+      <Panel name="Save and export">
         <OutPanel studio={studio} title={title} />
         {isOwn && <RecipeKept studio={studio} />}
       </Panel>
@@ -90,11 +90,11 @@ export function Panels({ studio, title }: { studio: Studio; title: string }) {
 }
 
 const INSIDE: Record<string, string> = {
-  Picked: "Numbers of what is picked; several selected, held, moved, measured",
+  Selection: "Numbers of what is picked; several selected, held, moved, measured",
   Draw: "Particles, lines and faces drawn by clicks; springs and faces divided",
   Shape: "The measures that this model was made from",
   Forces: "The forces of the model with their values, and new ones; the solver",
-  See: "Colours, layers, labels and the section plane",
+  Display: "Colours, layers, labels and the section plane",
   "Load cases": "The form under each case and combination of loads",
   Surface: "Slope, curvature, stress of cloth, height lines and the ways of water",
   Charts: "Residual, energy and what is picked, over the last minute",
@@ -102,7 +102,7 @@ const INSIDE: Record<string, string> = {
   Tables: "Springs, particles and reactions in numbers",
   Design: "Values found by a search for goals",
   Compare: "Variants of the model, and their differences",
-  Out: "The model as a file, picture or link",
+  "Save and export": "The model as a file, picture or link",
 };
 
 interface Told {
@@ -115,7 +115,7 @@ interface Told {
 function Panel({ name, isClosed = false, isOpen = false, children }: Told) {
   const narrow = window.matchMedia("(max-width: 820px)").matches;
   return (
-    <details class="panel" open={isOpen || (!narrow && !isClosed) || ["Picked", "Shape", "Forces"].includes(name)}>
+    <details class="panel" open={isOpen || (!narrow && !isClosed) || ["Selection", "Shape", "Forces"].includes(name)}>
       <summary title={INSIDE[name]}>
         <h2>{name}</h2>
       </summary>

@@ -25,7 +25,7 @@ export function Repairs({ session }: { session: Session }) {
   if (!found.length && !loose) return null;
   return (
     <div class="repairs" role="group" aria-label="Repairs">
-      {loose && <p>Nothing is held: hold some particles, or pick one and pin it under Picked.</p>}
+      {loose && <p>Nothing is held: hold some particles, or pick one and pin it under Selection.</p>}
       {found.map(({ why }) => why && <p key={why}>{why}</p>)}
       {found.map(({ seen, hint, patch, done }) => (
         <button

@@ -4,7 +4,8 @@ import { useEffect, useMemo, useRef, useState } from "preact/hooks";
 import type { Frame } from "../frame";
 import { keep } from "./out";
 import type { Studio } from "./studio";
-import { type Bin, bins, type Column, counting, csv, type Named, sorted, sum, type Table, tabled, TABLES } from "./tabling";
+import { type Bin, bins, type Column, counting, csv, type Named } from "./tabling";
+import { sorted, sum, type Table, tabled, TABLES } from "./tabling";
 import { counted, measured, said, titled } from "./words";
 
 const ROWS = 100;
