@@ -13,15 +13,13 @@ from pathlib import Path
 import pytest
 
 from canvas import isolated
-from canvas.wired import inputs
+from canvas.wired import ENTRIES, inputs
 from hookean.forces import KINDS
-from hookean.scene.catalogue import catalogue
 from hookean_canvas.components import bundles, force_bundles, icons, inline
 from hookean_canvas.run import stand_in
 from serving import HANG
 
 COMPONENTS = Path(__file__).parents[2] / "components"
-ENTRIES = {entry["kind"]: entry for entry in catalogue()}
 every_force = pytest.mark.parametrize("kind", list(KINDS))
 
 

@@ -7,15 +7,15 @@ that the engine replaces is taken away from the engine's class: numba would call
 
 from __future__ import annotations
 
+import importlib
 import sys
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from numba.core import codegen, compiler, cpu, dispatcher
 
-from hookean.compiled import announcing, dispatch, linking
+from hookean.compiled import announcing, dispatch
 from hookean.compiled import object_cache as machine
 from hookean.compiled.object_cache import Compiled, readable
 from soak import sampled
@@ -23,28 +23,34 @@ from soak import sampled
 pytestmark = pytest.mark.skipif(sys.platform == "win32" or not readable(), reason="numba compiles here")
 
 READ = {
-    "codegen._create_empty_module": (codegen.JITCPUCodegen, "_create_empty_module"),
-    "codegen._engine": (codegen.JITCPUCodegen, "_engine"),
-    "codegen._tm": (codegen.JITCPUCodegen, "_tm"),
-    "library._get_module_for_linking": (codegen.CPUCodeLibrary, "_get_module_for_linking"),
-    "library._finalize_dynamic_globals": (codegen.CPUCodeLibrary, "_finalize_dynamic_globals"),
-    "dispatcher.overloads": (dispatcher._DispatcherBase, "overloads"),
-    "dispatcher.get_call_template": (dispatcher._DispatcherBase, "get_call_template"),
-    "context.call_conv": (cpu.CPUContext, "call_conv"),
-    "CompileResult._rebuild": (compiler.CompileResult, "_rebuild"),
+    "codegen._create_empty_module": ("numba.core.codegen", "JITCPUCodegen", "_create_empty_module"),
+    "codegen._engine": ("numba.core.codegen", "JITCPUCodegen", "_engine"),
+    "codegen._tm": ("numba.core.codegen", "JITCPUCodegen", "_tm"),
+    "library._get_module_for_linking": ("numba.core.codegen", "CPUCodeLibrary", "_get_module_for_linking"),
+    "library._finalize_dynamic_globals": ("numba.core.codegen", "CPUCodeLibrary", "_finalize_dynamic_globals"),
+    "dispatcher.overloads": ("numba.core.dispatcher", "_DispatcherBase", "overloads"),
+    "dispatcher.get_call_template": ("numba.core.dispatcher", "_DispatcherBase", "get_call_template"),
+    "context.call_conv": ("numba.core.cpu", "CPUContext", "call_conv"),
+    "CompileResult._rebuild": ("numba.core.compiler", "CompileResult", "_rebuild"),
 }
 REPLACED = {
-    "library._finalize_final_module": (linking._Part, "_finalize_final_module"),
-    "library.serialize_using_object_code": (linking._Part, "serialize_using_object_code"),
-    "engine.is_symbol_defined": (linking._NoEngine, "is_symbol_defined"),
-    "engine.get_global_value_address": (linking._NoEngine, "get_global_value_address"),
-    "compiler.define_pipelines": (linking._Compiler, "define_pipelines"),
-    "cache._impl_class": (linking._Cache, "_impl_class"),
-    "cache.rebuild": (linking._Stored, "rebuild"),
+    "library._finalize_final_module": ("hookean.compiled.linking", "_Part", "_finalize_final_module"),
+    "library.serialize_using_object_code": ("hookean.compiled.linking", "_Part", "serialize_using_object_code"),
+    "engine.is_symbol_defined": ("hookean.compiled.linking", "_NoEngine", "is_symbol_defined"),
+    "engine.get_global_value_address": ("hookean.compiled.linking", "_NoEngine", "get_global_value_address"),
+    "compiler.define_pipelines": ("hookean.compiled.linking", "_Compiler", "define_pipelines"),
+    "cache._impl_class": ("hookean.compiled.linking", "_Cache", "_impl_class"),
+    "cache.rebuild": ("hookean.compiled.linking", "_Stored", "rebuild"),
 }
+"""Of each the module, the class and the name there; importing numba takes half a second."""
 HARMLESS = {"dispatcher.get_call_template", "compiler.define_pipelines"}
 """Without these, more is compiled than has to be, and stored all the same."""
 READING = {"CompileResult._rebuild", "cache._impl_class", "cache.rebuild"}
+
+
+def found(module: str, owner: str, name: str) -> tuple[type, str]:
+    """The class in a module, and the name of its part."""
+    return getattr(importlib.import_module(module), owner), name
 
 
 def again(number):  # type: ignore[no-untyped-def]
@@ -141,7 +147,7 @@ def test_a_part_that_the_engine_reads_has_another_name(
     part: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     """The engine gets an AttributeError."""
-    owner, name = READ[part]
+    owner, name = found(*READ[part])
     before(part, tmp_path)
     monkeypatch.setattr(owner, name, Hidden(owner, name), raising=False)
     check(part, tmp_path, caplog)
@@ -153,7 +159,7 @@ def test_a_method_that_the_engine_replaces_has_another_name(
     part: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     """numba calls its own, in the engine's place."""
-    owner, name = REPLACED[part]
+    owner, name = found(*REPLACED[part])
     before(part, tmp_path)
     monkeypatch.delattr(owner, name)
     check(part, tmp_path, caplog)

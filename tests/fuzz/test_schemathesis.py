@@ -13,13 +13,8 @@ from copy import deepcopy
 from typing import Any
 
 import pytest
-import schemathesis
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
-from schemathesis import GenerationMode
-from schemathesis.config import SchemathesisConfig
-from schemathesis.core.parameters import ParameterLocation
-from schemathesis.specs.openapi import checks
 
 from hookean_server.problems import CATALOGUE
 from server.conftest import Served
@@ -29,21 +24,19 @@ from soak import SOAK, sampled
 CASES = 300 if SOAK else 3
 RUNS, STEPS = (200, 20) if SOAK else (5, 10)
 LABELS = sorted(f"{method.upper()} {path}" for path, item in app().openapi()["paths"].items() for method in item)
-CHECKS = [
-    checks.status_code_conformance,
-    checks.content_type_conformance,
-    checks.response_schema_conformance,
-    checks.response_headers_conformance,
-    checks.negative_data_rejection,
-    checks.ignored_auth,
-]
 MAKING = {"POST /v1/sessions": CABLE, "PUT /v1/sessions/{key}": CABLE, "POST /v1/jobs": {"scene": CABLE}}
-CONFIG = SchemathesisConfig.from_dict(
-    {
-        "checks": {"negative_data_rejection": {"expected-statuses": ["4xx", "5xx"]}},  # 412 comes before 422
-        "phases": {"stateful": {"inference": {"algorithms": []}}},  # only the links of the description
-    }
+CHECKS = (
+    "status_code_conformance",
+    "content_type_conformance",
+    "response_schema_conformance",
+    "response_headers_conformance",
+    "negative_data_rejection",
+    "ignored_auth",
 )
+CONFIG = {
+    "checks": {"negative_data_rejection": {"expected-statuses": ["4xx", "5xx"]}},  # 412 comes before 422
+    "phases": {"stateful": {"inference": {"algorithms": []}}},  # only the links of the description
+}
 KNOWN = {"key": ("a", "b", "c"), "slug": tuple(CATALOGUE)}
 ENDING = ("/v1/shutdown", "/v1/token")
 """Whoever is let in there ends the service, or what lets the others in."""
@@ -59,13 +52,20 @@ def running() -> Iterator[Served]:
 @pytest.fixture(scope="module")
 def operations(running: Served) -> dict[str, Any]:
     """Of the service's own description: the name of its cookie has its port."""
-    schema = schemathesis.openapi.from_dict(running.client.get("/v1/openapi.json").json(), config=CONFIG)
+    import schemathesis  # takes as long as collecting a tenth of all tests, which each process does
+    from schemathesis.config import SchemathesisConfig
+
+    config = SchemathesisConfig.from_dict(CONFIG)
+    schema = schemathesis.openapi.from_dict(running.client.get("/v1/openapi.json").json(), config=config)
     return {operation.label: operation for found in schema.get_all_operations() if (operation := found.ok())}
 
 
 @pytest.mark.thinned
 @pytest.mark.parametrize("label", sampled(LABELS, 3))
 def test_every_answer_is_described(label: str, running: Served, operations: dict[str, Any]) -> None:
+    from schemathesis import GenerationMode
+    from schemathesis.core.parameters import ParameterLocation
+
     operation, seen = operations[label], set()
     modes = [GenerationMode.POSITIVE, GenerationMode.NEGATIVE]
     cases = st.one_of(*(operation.as_strategy(generation_mode=mode) for mode in modes))
@@ -103,7 +103,14 @@ def _given(case: Any, running: Served) -> dict[str, Any]:
     return {"base_url": running.url, "timeout": HANG, "headers": headers}
 
 
-def _called(case: Any, running: Served, *more: Any) -> int:
+def _check(name: str) -> Any:
+    """A check of schemathesis."""
+    from schemathesis.specs.openapi import checks
+
+    return getattr(checks, name)
+
+
+def _called(case: Any, running: Served, *more: str) -> int:
     """The status of the answer to a case, checked."""
     answer = case.call(**_given(case, running))
     _checked(case, answer, running, more)
@@ -124,11 +131,11 @@ def _settled(case: Any, running: Served) -> Any:
     return answer
 
 
-def _checked(case: Any, answer: Any, running: Served, more: Iterable[Any], recorder: Any = None) -> None:
+def _checked(case: Any, answer: Any, running: Served, more: Iterable[str], recorder: Any = None) -> None:
     failed = answer.status_code >= 500 and answer.status_code not in (503, 504, 507)
     assert not failed, (answer.content[:500], running.log()[-5000:])
     given = _given(case, running)
-    chosen = [*CHECKS, *more]
+    chosen = [_check(name) for name in (*CHECKS, *more)]
     case.validate_response(answer, chosen, headers=given["headers"], transport_kwargs=given, recorder=recorder)
     assert b"Traceback" not in answer.content and b"site-packages" not in answer.content
 
@@ -146,11 +153,13 @@ def test_values_at_their_limits_and_other_methods_are_described(
     label: str, running: Served, operations: dict[str, Any]
 ) -> None:
     """Every value that schemathesis derives from a schema: at each limit, beyond it, left out, of another type."""
+    from schemathesis import GenerationMode
+
     operation, modes = operations[label], [GenerationMode.POSITIVE, GenerationMode.NEGATIVE]
     chosen = operation.schema.config.generation_for(operation=operation, phase="coverage")
     cases = operation.schema.iter_coverage_cases(operation, generation_modes=modes, generation_config=chosen)
     # no `missing_required_header`: no operation requires one
-    assert [_called(case, running, checks.unsupported_method) for case in cases]
+    assert [_called(case, running, "unsupported_method") for case in cases]
 
 
 @pytest.mark.soak
@@ -173,8 +182,8 @@ def test_what_was_made_is_there_until_it_is_deleted(running: Served, operations:
 
         def validate_response(self, response: Any, case: Any, *_: Any, **__: Any) -> None:
             # a job that was cancelled can still be read
-            more = [] if case.operation.path.startswith("/v1/jobs") else [checks.use_after_free]
-            more.append(checks.ensure_resource_availability)
+            more = [] if case.operation.path.startswith("/v1/jobs") else ["use_after_free"]
+            more.append("ensure_resource_availability")
             _checked(case, response, running, more, self.recorder)
             label, status = case.operation.label, response.status_code
             seen.add((label, status))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -35,23 +37,31 @@ def springs(count: int = 12, **columns: object) -> System:
     return compile(Scene(particles=x, forces=[{**force, **columns}]))
 
 
-SYSTEMS = {kind: example_system(kind) for kind, cls in KINDS.items() if cls.kernel is not None}
-SYSTEMS["plain"] = springs(damping=0.0)
-SYSTEMS["damped"] = springs(damping=np.linspace(0.0, 30.0, 12))
-SYSTEMS["cut off"] = springs(upper_cutoff=1.0)
-SYSTEMS["many"] = springs(2 * SEVERAL + 5, damping=0.0)
-SYSTEMS["many, damped"] = springs(2 * SEVERAL + 5)
+SPRINGS: dict[str, dict[str, object]] = {
+    "plain": {"damping": 0.0},
+    "damped": {"damping": np.linspace(0.0, 30.0, 12)},
+    "cut off": {"upper_cutoff": 1.0},
+    "many": {"count": 2 * SEVERAL + 5, "damping": 0.0},
+    "many, damped": {"count": 2 * SEVERAL + 5},
+}
+KERNELS = [kind for kind, cls in KINDS.items() if cls.kernel is not None]
+
+
+@cache
+def system_of(name: str) -> System:
+    """The example of a kind, or some springs."""
+    return springs(**SPRINGS[name]) if name in SPRINGS else example_system(name)
 
 
 @pytest.mark.parametrize("damped", [True, False])
-@pytest.mark.parametrize("name", SYSTEMS)
+@pytest.mark.parametrize("name", [*KERNELS, *SPRINGS])
 @seeds(10, soak=30)
 def test_lean_forces_are_the_forces(name: str, damped: bool, seed: int) -> None:
     """Packed blocks and summed loads push as the kernels in full do.
 
     An element's two ways differ by a few roundings of stiffness x coordinates and of its force, and the damping ones.
     """
-    system, rng = SYSTEMS[name], np.random.default_rng(seed)
+    system, rng = system_of(name), np.random.default_rng(seed)
     state = system.start()
     far = 0.3 * system.size
     state.x += far * rng.uniform(-1.0, 1.0, state.x.shape) * (rng.random((len(state.x), 1)) < 0.8)
@@ -71,9 +81,9 @@ def test_springs_are_packed_where_they_can_be() -> None:
     """Two numbers each without damping, three with it; cutoffs need them all, and nothing else does."""
     numbers = {}
     for name in ("plain", "damped", "cut off"):
-        system = SYSTEMS[name]
+        system = system_of(name)
         numbers[name] = [lean(system, system.start(), damped=d).calls[1][0][1][1].size // 12 for d in (False, True)]
-    whole = len(SYSTEMS["plain"].groups[0].block.names)
+    whole = len(system_of("plain").groups[0].block.names)
     assert numbers == {"plain": [2, 2], "damped": [2, 3], "cut off": [whole, whole]}
 
 
@@ -185,7 +195,7 @@ SKINS = skins()
 def test_a_shell_as_a_whole_is_the_sum_of_its_elements(name: str, seed: int, part: float) -> None:
     """Forces and energy of element by element, within rounding of stiffness x coordinates; and at most their lumped
     stiffness, as moments on an edge that are opposite cancel before their size counts."""
-    system, rng = (SKINS if name == "skins" else SYSTEMS["shell"]), np.random.default_rng(seed)
+    system, rng = (SKINS if name == "skins" else system_of("shell")), np.random.default_rng(seed)
     state = system.start()
     state.x += part * system.size * rng.uniform(-1.0, 1.0, state.x.shape)
     (group,) = system.groups

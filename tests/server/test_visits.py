@@ -6,7 +6,7 @@ import json
 import os
 import select
 import socket
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, suppress
 from typing import Any
 
@@ -227,9 +227,9 @@ def frames(chains: int, links: int) -> list[dict[str, Any]]:
     ]
 
 
-REQUESTS = {
-    "points": (divide(20_000), "/Count"),
-    "faces of a Brep": (
+REQUESTS: dict[str, Callable[[], tuple[dict[str, Any], str]]] = {
+    "points": lambda: (divide(20_000), "/Count"),
+    "faces of a Brep": lambda: (
         {
             "pointer": "mesh_faces",
             "values": [
@@ -239,8 +239,8 @@ REQUESTS = {
         },
         "/V",
     ),
-    "links of chains": ({"pointer": "chains_between_frames", "values": frames(1000, 500)}, "/Links"),
-    "edges of a mesh that is given": (
+    "links of chains": lambda: ({"pointer": "chains_between_frames", "values": frames(1000, 500)}, "/Links"),
+    "edges of a mesh that is given": lambda: (
         {"pointer": "edges", "values": [tree("Mesh", "Rhino.Geometry.Mesh", grid(60))]},
         "/",
     ),
@@ -249,7 +249,7 @@ REQUESTS = {
 
 @pytest.mark.parametrize("name", REQUESTS)
 def test_an_answer_that_would_be_too_large_is_not_made(small: Served, name: str) -> None:
-    request, pointer = REQUESTS[name]
+    request, pointer = REQUESTS[name]()
     answer = small.client.post("/solve", json=request)
     assert answer.status_code == 422, answer.text[:300]
     [said] = answer.json()["errors"]

@@ -49,9 +49,6 @@ PLACES = ("particles", "points", "lines", "mesh")
 """The fields that say where a force acts; a force has some of them and is given exactly one."""
 
 
-ZERO = np.float64(0.0).tobytes()
-
-
 @dataclass
 class Block:
     """One force compiled to arrays: what its kernel reads. All C-contiguous.
@@ -72,19 +69,22 @@ class Block:
     def of(cls, indices: Any, *, memory: int = 0, **columns: Any) -> Block:
         """Build a block from `indices` (m, arity) and named columns: one value, (m,) values or (m, k) rows."""
         index = np.ascontiguousarray(indices, dtype=np.int64)
-        values = {name: np.asarray(column, dtype=np.float64) for name, column in columns.items()}
-        wide = [column.shape[1] if column.ndim > 1 else 1 for column in values.values()]
-        names = tuple(name for name, count in zip(values, wide, strict=True) for _ in range(count))
+        names: list[str] = []
+        filled: list[tuple[int, Floats]] = []  # what is not zero for all elements
+        for name, column in columns.items():
+            values = np.asarray(column, dtype=np.float64)
+            count = values.shape[1] if values.ndim > 1 else 1
+            if values.size != count or values.tobytes() != bytes(8 * count):
+                filled.append((len(names), values))
+            names += [name] * count
         table = np.zeros((len(index), len(names)))
-        at = 0
-        for column, count in zip(values.values(), wide, strict=True):
-            if column.ndim > 1:
-                for i in range(count):  # quicker than all of them at once
-                    table[:, at + i] = column[:, i]
-            elif column.ndim or column.tobytes() != ZERO:
-                table[:, at] = column
-            at += count
-        return cls(index, table, np.zeros((len(index), memory)), names)
+        for at, values in filled:
+            if values.ndim > 1:
+                for i in range(values.shape[1]):  # quicker than all of them at once
+                    table[:, at + i] = values[:, i]
+            else:
+                table[:, at] = values
+        return cls(index, table, np.zeros((len(index), memory)), tuple(names))
 
     def some(self, rows: Ints | slice) -> Block:
         """Some elements as a block of their own; of a slice its arrays are views."""

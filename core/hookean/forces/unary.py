@@ -52,7 +52,7 @@ class Unary(Force):
     def compile(self, places: Places) -> Block:
         """Arrays for the kernel: the vector; and the moment, for `Moments`."""
         index = places.elements(self)
-        return Block.of(index, vector=np.reshape(self.vector, (-1, 3)), moment=np.reshape(self.moment, (-1, 3)))
+        return Block.of(index, vector=self.vector.reshape(-1, 3), moment=self.moment.reshape(-1, 3))
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """The load on each particle [force], and its moment [force length]."""

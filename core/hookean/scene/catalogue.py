@@ -74,7 +74,9 @@ def _schema() -> dict[str, Any]:
 
 def page() -> str:
     """The page docs/forces.md."""
-    return "# Forces\n\nGenerated from the classes in `core/hookean/forces` by `make docs`.\n\n" + markdown()
+    about = "Every force, with its formula, fields and units. `hookean forces KIND` prints the same for one of them."
+    made = "<!-- made from the classes in core/hookean/forces by make docs -->"
+    return f"# Forces\n\n{made}\n\n{about}\n\n{markdown()}"
 
 
 def exports(text: str) -> str:
@@ -111,7 +113,8 @@ def markdown() -> str:
     for e in entries:
         places = [*e["places"], *(["everything"] if e["everywhere"] else [])]
         lines.append(
-            f"| [`{e['kind']}`](#{e['kind']}) | {_cell(e['summary'])} | {_cell(e['formula'])} | {', '.join(places)} |"
+            f"| [`{e['kind']}`](#{e['kind']}) | {_cell(_words(e['summary']))} | {_cell(e['formula'])} | "
+            f"{', '.join(places)} |"
         )
     for e in entries:
         lines += ["", f"## {e['kind']}", "", e["description"], ""]
@@ -204,6 +207,11 @@ def _scene(cls: type[Force]) -> dict[str, Any] | None:
         return example_scene(cls)
     except TypeError:
         return None
+
+
+def _words(summary: str) -> str:
+    """A summary up to its formula, which has a column of its own."""
+    return re.split(r"[:,;] (?:moment )?\w+ = ", summary)[0].rstrip(".") + "."
 
 
 def _cell(text: str) -> str:

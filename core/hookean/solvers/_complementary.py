@@ -89,7 +89,8 @@ class Method(Solver):
         moving = net.particles[: len(net.first)]
         x = state.x.take(net.particles, axis=0)
         ground, pull = ground[moving], pull.take(moving, axis=0)
-        starts = np.concatenate([[0], np.cumsum(np.arange(1, len(moving) + 1) - net.first)])
+        starts = np.zeros(len(moving) + 1, np.int64)
+        np.cumsum(np.arange(1, len(moving) + 1) - net.first, out=starts[1:])
         given = (net.ends, net.k, net.rest, ground, pull, net.first, starts)
         q, gap, near = np.empty(len(net.k)), np.empty(len(net.k)), NEAR * system.size
         tangent, step = np.empty(9 * starts[-1] - 3 * len(moving)), np.empty((len(moving), 3))

@@ -27,7 +27,7 @@ ASIDE = 0.02  # of the length of a line
 def loose_ends(system: System, once: NDArray[np.bool_]) -> list[str]:
     """A sentence for each force with such ends in the start shape; `once` (n,): one end of an element alone is at that
     particle."""
-    loose = once.copy()
+    loose = once.copy() if system.held else once
     for anchor in system.held:
         loose[anchor.particles] = False
     if not loose.any():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -139,6 +140,11 @@ class System:
             self._films = Films(self)
         return self._films
 
+    @cached_property
+    def _at_rest(self) -> Floats:
+        """Velocities (n, 3) for kernels to read, which write none."""
+        return np.zeros(self.x.shape)
+
     def start(self) -> State:
         """The state before the first iteration: anchors at their targets, memories empty."""
         state = State(x=self.x.copy(), v=self.v.copy(), free=np.ones(self.x.shape))
@@ -187,7 +193,7 @@ class System:
         that is loads is added.
         """
         f, w = np.zeros(self.x.shape), np.zeros(len(self.x))
-        v = np.zeros(self.x.shape) if still else state.v
+        v = self._at_rest if still else state.v
         energies = np.zeros(len(self.groups))
         for i, (group, memory) in enumerate(zip(self.groups, state.memory, strict=True)):
             if only and group.cls.role != only:
