@@ -80,7 +80,7 @@ class Swapping:
             told = "with a bomb it is played in physical time"
         if told:
             time = {"solver": "verlet"}
-            pieces = (replace(p, values=p.values | time) if "solver" in p.values else p for p in self.swap.pieces)
+            pieces = (replace(p, values={**p.values, **time}) if "solver" in p.values else p for p in self.swap.pieces)
             self.swap = replace(self.swap, pieces=tuple(pieces), differs=f"{self.swap.differs}; {told}")
 
     def _has_data(self) -> bool:
