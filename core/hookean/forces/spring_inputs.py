@@ -45,6 +45,8 @@ def one_way(springs: Springs) -> None:
 
 def _cutoffs_in_order(lower: float | Floats, upper: float | Floats) -> None:
     """A fault where a spring would work at no length."""
+    if not np.count_nonzero(upper):
+        return
     low, high = np.ravel(lower), np.ravel(upper)
     if 1 not in (len(low), len(high)) and len(low) != len(high):
         return  # not as many as elements: reported elsewhere

@@ -109,12 +109,12 @@ def write_exports() -> None:
 def markdown() -> str:
     """The catalogue as Markdown: a table of all forces, then one table of fields for each."""
     entries = catalogue()
-    lines = ["| kind | description | energy | acts on |", "| --- | --- | --- | --- |"]
+    lines = ["| kind | description | acts on | energy |", "| --- | --- | --- | --- |"]
     for e in entries:
         places = [*e["places"], *(["everything"] if e["everywhere"] else [])]
         lines.append(
-            f"| [`{e['kind']}`](#{e['kind']}) | {_cell(_words(e['summary']))} | {_cell(e['formula'])} | "
-            f"{', '.join(places)} |"
+            f"| [`{e['kind']}`](#{e['kind']}) | {_cell(_words(e['summary']))} | {', '.join(places)} | "
+            f"{_cell(e['formula'])} |"
         )
     for e in entries:
         lines += ["", f"## {e['kind']}", "", e["description"], ""]

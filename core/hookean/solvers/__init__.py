@@ -15,7 +15,7 @@ def solver(name: str) -> Solver:
 
 @cache
 def _method(name: str) -> type[Solver]:
-    found = importlib.import_module(f"{__name__}.{name}").Method
+    found: type[Solver] = importlib.import_module(f"{__name__}.{name}").Method
     assert issubclass(found, Solver)
     return found
 
