@@ -10,7 +10,10 @@ beam, My and Mz at its start (0) and end (1), and the shear forces Vz = (My1 - M
 Mz1) / l, as what lies behind a section acts on what lies before it, in the section's axes.
 
 Give E, G, A, Iy, Iz and J, or the names of a material and a section of the scene. With a
-`temperature` L is the drawn length times 1 + expansion x temperature; the section stays.
+`temperature` L is the drawn length times 1 + expansion x temperature; the section stays. Loads act
+on particles: a `line_weight` or `self_weight` W along a beam bends it by nothing between its ends,
+where W l / 8 is missing; divide beams under such loads into several (a warning reports where much
+is missing).
 
 The section's axis x runs along the beam, z is in the plane of x and `normal`, and y = z cross x.
 Rows that are straight without stress are bent in, and twisted in where the normals turn along the

@@ -7,7 +7,8 @@ particles is 0.196 N each, also where some of the given points met no particle (
 particles or a mesh (its edges). A material with a section weighs density x area x gravity per start
 length of the same; a cloth, or a solid with a thickness, weighs that on the faces of a mesh, a
 third of each triangle's on each of its corners. The load does not change as lines and faces
-stretch: weight is conserved. Energy -W d . x. Source: the chapter, 9.5.
+stretch: weight is conserved. A form that is found may be far longer or larger than it was drawn;
+there `line_weight` and `area_weight` weigh what it is. Energy -W d . x. Source: the chapter, 9.5.
 
 E = -W d.x
 """

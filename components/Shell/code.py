@@ -17,6 +17,10 @@ half outside of the clamp. theta0 = angle factor x start angle. Quads are split 
 diagonal (a draw: first to third corner), which folds as any edge. Forces and moments of every
 triangle sum to zero, whatever its size.
 
+A result reports the largest fold of each triangle's edges, and the larger of its two principal
+bending moments per width, without its sign; with a thickness also the stress of bending at its
+faces, 6 M / t^2.
+
 The mesh may not have three faces at one edge; faces without area are left out. Sources: Morley,
 "The constant- moment plate-bending element", 1971; Grinspun et al., "Discrete shells", 2003;
 Grinspun et al., "Computing discrete shape operators on general meshes", 2006.
