@@ -172,7 +172,7 @@ def test_a_session_that_is_slow_is_told_from_one_that_does_not_answer(tab: Studi
     wire = Wire(tab)
     tab.allowed = ["failed: .*/v1/sessions/slow", "ERR_FAILED"]
     tab.press("Play")
-    page.get_by_text("Live", exact=True).wait_for()
+    page.get_by_role("button", name="Play", pressed=True).wait_for()
     wire.keep()
     page.get_by_text("Slow: last update").wait_for()
     assert page.get_by_text("updates arrive slowly").is_visible()
