@@ -127,6 +127,7 @@ def test_classic_forces_between_points_keep_their_laws(tmp_path: Path) -> None:
     d.check(tmp_path)
 
 
+@pytest.mark.soak
 def test_classic_angles_become_equal_and_lines_parallel(tmp_path: Path) -> None:
     """Anchors of h turn an angle back by h a^2 per radian at most, the moments of m turn it on: within h / m of it."""
     d = Bench("angles")

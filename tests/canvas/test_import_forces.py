@@ -106,6 +106,7 @@ def test_goals_of_points_and_lines_keep_their_laws(tmp_path: Path) -> None:
     d.check(tmp_path)
 
 
+@pytest.mark.soak
 def test_points_are_fitted_and_kept_out_of_curves_by_the_whole_strength(tmp_path: Path) -> None:
     """Fits that residuals do not move: each residual r shrinks to r h / (h + k). A depth against
     an equal anchor: half."""

@@ -69,6 +69,7 @@ def test_a_step_of_verlet_keeps_the_part_of_the_velocity_that_the_script_is_give
     assert (1 - 0.005 * drag) / (1 + 0.005 * drag) == pytest.approx(part, abs=1e-12)
 
 
+@pytest.mark.soak
 def test_a_soft_anchor_by_axes_gives_way_by_force_over_strength(home: Home, tmp_path: Path) -> None:
     """The load of 2 pulls the point down 2 / 50; the line turns, and stays as long but for the square of that."""
     root, _ = held(50.0, 0.9)

@@ -85,6 +85,7 @@ def test_points_thrown_apart_by_a_bomb_come_to_rest_on_their_anchors(tmp_path: P
     np.testing.assert_allclose(found[np.argsort(found[:, 0])], [[-1, 0, 0], [1, 0, 0]], atol=1e-2)
 
 
+@pytest.mark.soak
 def test_circles_as_large_as_a_mesh_is_bright_push_each_other_apart_by_their_radii(tmp_path: Path) -> None:
     """A mesh of one grey, 51 of 255: both radii are 0.2 + 0.2 (1 - 0.2) = 0.36 everywhere.
 

@@ -12,6 +12,7 @@ from hookean.scene.catalogue import entry
 from laws.cases import scene_of
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("kind", KINDS)
 def test_the_scene_of_the_catalogue_comes_to_rest(kind: str) -> None:
     """As text and back, by the default settings. The force is the first of the scene, and what else it may have to act
