@@ -89,7 +89,7 @@ def test_so_do_those_of_load_cases(kind: str) -> None:
 
 def test_a_floor_that_nothing_touches_takes_no_step_away() -> None:
     """A cable above a floor, to the tolerance of 1e-6; the exact steps of its case make reactions balance to 1e-12, as
-    without the floor. Where the cable lies on the floor there are none, and the result is within the tolerance."""
+    without the floor. On the floor, exact reactions do not exist, and the result is within the tolerance."""
     spec: dict[str, Any] = {
         "particles": [[0, 0, 0.2], [1, 0, 0.5], [2, 0, 0.2]],
         "forces": [

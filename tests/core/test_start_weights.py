@@ -1,4 +1,4 @@
-"""Weights of materials, which count the start shape: where the form is longer or larger, freezing says so."""
+"""Weights of materials, which count the start shape: freezing reports a form that is longer or larger."""
 
 from __future__ import annotations
 

@@ -9,9 +9,7 @@ import numpy as np
 from hookean.compiled.marks import device
 
 ABREAST, FEW, BITS = 16, 4, 64  # elements that are compared at once, or one by one if runs are short; bits of a number
-TOGETHER = (
-    48  # elements in a cell and those that its elements look in, up to which they are copied and compared in turn
-)
+TOGETHER = 48  # elements in and near a cell, up to which they are copied and compared in turn
 ONE, BRUIJN = np.uint64(1), np.uint64(0x03F79D71B4CB0A89)  # the upper six bits of this times a power of 2 are unique
 LOWEST = np.zeros(BITS, np.uint64)  # which bit is set, by these six
 LOWEST[[(int(BRUIJN) << bit & 0xFFFFFFFFFFFFFFFF) >> 58 for bit in range(BITS)]] = np.arange(BITS)

@@ -286,10 +286,8 @@ class Shell(Force):
         poisson = float(parameters[0, POISSON]) if len(parameters) else 0.0
         bent = bent @ root_of_stiffness(poisson)  # moments are D times what has the energy |bent|^2, times this again
         # by components xx, yy and sqrt(2) xy: the principal ones are half of their sum +- spread
-        mean, spread = (
-            0.5 * (bent[:, 0] + bent[:, 1]),
-            0.5 * np.hypot(bent[:, 0] - bent[:, 1], np.sqrt(2.0) * bent[:, 2]),
-        )
+        xx, yy, xy = bent.T
+        mean, spread = 0.5 * (xx + yy), 0.5 * np.hypot(xx - yy, np.sqrt(2.0) * xy)
         moment = parameters[:, STRENGTH] * (np.abs(mean) + spread) / np.sqrt(parameters[:, AREA])
         return {"angle": np.abs(turn[:, :3]).max(axis=1, initial=0.0), "moment": moment}
 
