@@ -70,7 +70,9 @@ def test_random_trusses_of_von_mises_snap_where_they_are_singular(seed: int, mon
 @seeds(1, soak=20)
 def test_random_star_domes_have_singular_critical_points(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
     """Their paths lie close to one another: a step that leaves one for another finds no critical point between its
-    ends, and without shorter ones most of these paths had such points at up to 2e-3 of the stiffness."""
+    ends, and without shorter ones most of these paths had such points at up to 2e-3 of the stiffness. A first step of
+    several times the load that snaps them must not pass over the snap, as it did for four of the twenty: both of its
+    ends were stable."""
     rng = np.random.default_rng(seed)
     count = int(rng.integers(4, 7))
     turn = np.arange(count) * 2.0 * np.pi / count
@@ -81,6 +83,6 @@ def test_random_star_domes_have_singular_critical_points(seed: int, monkeypatch:
     i = np.arange(count)
     pairs = [[0 * i, 1 + i], [1 + i, 1 + (i + 1) % count], [1 + i, 1 + count + i], [1 + (i + 1) % count, 1 + count + i]]
     scene = trussed(x, np.concatenate(pairs, axis=1).T, 1 + count + i)
-    parts = singular(scene, monkeypatch, steps=16, increment=0.5)
+    parts = singular(scene, monkeypatch, steps=24, increment=0.5)
     assert len(parts) >= 2
     assert parts.max() <= 1e-6

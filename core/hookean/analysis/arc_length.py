@@ -27,6 +27,7 @@ PARTS = (0.5, 0.4, 0.65, 0.25, 0.8)  # of a bracket where its next point is trie
 NEAR = 1e-6  # of a step: two points of one path on both sides of a change are nearer than that
 FLAT = 1e-6  # of the rates about it: that of the load factor at a limit point
 RETAKEN = 8  # times a step that leaves its path is taken again, half as long
+STRAIGHT = 0.8  # cosine between a step and the path at both of its ends: one that turns more may have left its path
 LEVEL = 1e-3  # likewise, as near as halving comes
 
 
@@ -83,12 +84,12 @@ class Follower:
         for _ in range(RETAKEN):
             if step is None:
                 break
-            found = self.between(points[-1], step)
+            found = self.between(points[-1], step) if _straight(points[-1], step) else None
             if found is not None:
                 return step, found
             self.shortened *= 0.5
             step = self.step(points, reach)
-        return step, []
+        return step, (step and self.between(points[-1], step)) or []
 
     def step(self, points: list[Point], reach: float) -> Point | None:
         """The next point, `reach` away or less; None if no step is short enough to find one."""
@@ -238,6 +239,13 @@ class Follower:
         if not all(np.isfinite(part).all() for part in solution):
             return None
         return np.asarray(solution[0]), np.asarray(solution[1]), found.negatives
+
+
+def _straight(before: Point, after: Point) -> bool:
+    """Whether the path leaves one point and arrives at another nearly along the step between them."""
+    along = np.abs([before.tangent @ after.moved, after.tangent @ after.moved])
+    sizes = np.array([np.linalg.norm(before.tangent), np.linalg.norm(after.tangent)]) * np.linalg.norm(after.moved)
+    return bool(np.all(along >= STRAIGHT * sizes))
 
 
 def _crisfield(moved: Floats, left: Floats, tangent: Floats, reach: float) -> float | None:
