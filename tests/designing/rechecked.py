@@ -18,6 +18,11 @@ FLAT = 1e-4  # part of the objective: slopes below are those of a minimum
 BETTER = 1e-6  # part of the objective: a fall that counts
 
 
+def whole(quantity: Quantity) -> Quantity:
+    """The values that a quantity has differences of."""
+    return {**quantity, "equal": False, "smooth": False}
+
+
 class Check:
     """A problem at its answer."""
 
@@ -34,7 +39,7 @@ class Check:
         self.first_missed = float(np.abs(self.missed(*case.at(case.start, self.x))).max(initial=0.0))
 
     def _size(self, q: Quantity) -> float:
-        own = np.abs(measured(*self.case.at(self.case.start, self.x), q)).max()
+        own = np.abs(measured(*self.case.at(self.case.start, self.x), whole(q))).max()
         limits = [abs(q[side]) for side in ("lower", "upper") if side in q]
         return float(
             max(
@@ -106,7 +111,7 @@ class Check:
     @property
     def measure(self) -> float:
         """What objectives are measured by."""
-        squares = sum(g["weight"] * float((measured(self.net, self.x, g) ** 2).sum()) for g in self.case.goals)
+        squares = sum(g["weight"] * float((measured(self.net, self.x, whole(g)) ** 2).sum()) for g in self.case.goals)
         return abs(self.found.objective) + 1e-6 * abs(self.first) + 1e-24 * squares
 
     def better(self) -> tuple[float, float]:

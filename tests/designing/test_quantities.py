@@ -174,6 +174,24 @@ def test_a_range_asks_for_nothing_within_it() -> None:
     assert np.ptp(forces) > 0.1  # not made equal
 
 
+def test_lengths_that_are_equal_but_for_rounding_meet_the_goal() -> None:
+    """A cable of three equal springs under its ends' pull alone: their lengths differ by rounding, which is
+    measured by the lengths, not by itself."""
+    springs = {"kind": "springs", "name": "cable", "particles": [[0, 1], [1, 2], [2, 3]], "stiffness": 7.3}
+    scene = {
+        "particles": [[0, 0, 0], [0.3, 0.1, 0], [0.7, 0.3, 0], [1, 0.3, 0.7]],
+        "forces": [{**springs, "rest_length": 0.1}],
+    }
+    problem = {
+        "scene": {**scene, "anchors": [{"particles": [0, 3]}]},
+        "variables": [{"force": "cable", "field": "rest_length", "tie": "all", "lower": 0.05, "upper": 0.2}],
+    }
+    for way in ("equal", "smooth"):
+        found = design({**problem, "goals": [{"kind": "length", "force": "cable", way: True, "target": 0.0}]})
+        assert 0.0 < np.abs(found.goals[0]["value"]).max() < 1e-12
+        assert found.goals[0]["met"] is True and found.status == "converged"
+
+
 @pytest.mark.parametrize(
     "given, pointer, said",
     [

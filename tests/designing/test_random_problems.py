@@ -75,9 +75,10 @@ def test_a_search_that_is_at_no_minimum_does_not_say_converged() -> None:
 @pytest.mark.soak
 @pytest.mark.parametrize("twist", ["plain", "scaled"])
 def test_goals_that_conflict_much_do_not_end_early(twist: str) -> None:
-    """Where much of every goal is left, least squares go on slowly: the end is that of L-BFGS-B from the start."""
+    """Where much of every goal is left, least squares go on slowly: the end is that of L-BFGS-B from the start, which
+    takes some more iterations than the usual limit."""
     case = case_of(112, twist)
-    found, other = hookean.design(case.problem()), hookean.design(case.problem(method="l-bfgs-b"))
+    found, other = hookean.design(case.problem()), hookean.design(case.problem(method="l-bfgs-b", max_iterations=400))
     assert (found.status, other.status) == ("converged", "converged")
     assert found.objective <= other.objective * (1.0 + 1e-5)
 

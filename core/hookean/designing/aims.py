@@ -56,8 +56,11 @@ class Aims:
         """The objective where all values are at their targets but for rounding; less than any, if one is minimised."""
         if any(among is None for among in self.ranges):
             return -np.inf
-        sizes = [goal.weight * float((own**2).sum()) for goal, own in zip(self.goals, self.values(found), strict=True)]
-        return ROUNDED**2 * sum(sizes)
+        whole = 0.0
+        for i, (goal, own) in enumerate(zip(self.goals, self.values(found), strict=True)):
+            least = goal.quantity.differs_from(found, f"/goals/{i}")
+            whole += goal.weight * float(np.maximum(own**2, least**2).sum())
+        return ROUNDED**2 * whole
 
     def weights(self, found: Equilibrium) -> Floats:
         """The weight (k,) of each residual; 0 for values within their ranges."""

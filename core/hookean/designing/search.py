@@ -75,8 +75,10 @@ class Search:
         self.aims = Aims(problem, self.first)
         first = self.aims.constraint_values(self.first)
         self.sizes = [
-            size(values, *limits, self.sized(constraint.quantity))
-            for constraint, values, limits in zip(problem.constraints, first, self.aims.limits, strict=True)
+            size(values, *limits, self.sized(constraint.quantity, self.first, f"/constraints/{i}"))
+            for i, (constraint, values, limits) in enumerate(
+                zip(problem.constraints, first, self.aims.limits, strict=True)
+            )
         ]
         self.first_value = abs(self._objective(self.first))
         self.met = self.aims.rounding(self.first)
@@ -199,9 +201,11 @@ class Search:
         kept = [(g.quantity, f"/goals/{i}") for i, g in enumerate(self.problem.goals)]
         return np.nan_to_num(gradients(found, self.unknowns, kept, self.aims.slopes(found)) * self.scale)
 
-    def sized(self, quantity: Quantity) -> float:
-        """What values of a quantity are measured by where they are small: the model's size for lengths."""
-        return float(self.system.size) if quantity.unit == "length" else 0.0
+    def sized(self, quantity: Quantity, found: Equilibrium, pointer: str) -> float:
+        """What values of a quantity are measured by where they are small: the model's size for lengths, the values
+        themselves for their differences."""
+        natural = float(self.system.size) if quantity.unit == "length" else 0.0
+        return max(natural, quantity.differs_from(found, pointer))
 
     def missed(self, found: Equilibrium) -> float:
         """How far constraints are missed: the root of the sum of squares, by the sizes of their values [-]; 0 where

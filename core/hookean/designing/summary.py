@@ -160,7 +160,8 @@ def _goals(search: Search, found: Equilibrium, gained: Gains | None) -> Entries:
         size = float(np.abs(own).max(initial=0.0))
         if among is not None and missed is not None:
             entry["target"] = _single(own - missed if (among[0] < among[1]).any() else among[0])
-            size = max(size, float(np.abs(np.asarray(entry["target"])).max(initial=0.0)), search.sized(goal.quantity))
+            aimed = float(np.abs(np.asarray(entry["target"])).max(initial=0.0))
+            size = max(size, aimed, search.sized(goal.quantity, found, f"/goals/{i}"))
         entry["met"] = None if missed is None else bool(np.abs(missed).max(initial=0.0) <= LIMIT * (size or 1.0))
         others = [] if gained is None or entry["met"] else gained.conflicts[i]
         entry |= {"weight": goal.weight, "unit": goal.quantity.unit, "conflicts": others}

@@ -53,6 +53,10 @@ class Quantity(Model):
         """The same as parts that are at least 0 at any shape and add up to it; None if it has none."""
         return None
 
+    def differs_from(self, found: Equilibrium, pointer: str) -> float:
+        """The size [unit] of what its values are differences of; 0 where they are values themselves."""
+        return 0.0
+
     def slopes(self, found: Equilibrium, unknowns: Unknowns, pointer: str) -> Slopes:
         """Their derivatives, before the mean is taken from them where they are `centred`."""
         raise TypeError(f"{type(self).__name__} does not define slopes()")

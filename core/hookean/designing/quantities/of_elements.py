@@ -64,6 +64,13 @@ class OfElements(Quantity):
         """Of `equal`."""
         return self.equal
 
+    def differs_from(self, found: Equilibrium, pointer: str) -> float:
+        """Of `equal` and `smooth` the largest value of the column."""
+        if not (self.equal or self.smooth):
+            return 0.0
+        whole = self._whole(found, pointer)
+        return float(np.abs(whole[self._rows(whole, pointer)]).max(initial=0.0))
+
     def slopes(self, found: Equilibrium, unknowns: Unknowns, pointer: str) -> Slopes:
         """By differences of what the force measures, with all elements changed at once."""
         by_place, by_unknown = self._whole_slopes(found, unknowns, pointer)
