@@ -32,6 +32,8 @@ COMPUTING = ("docs", "tests", "fuzz", "canvas", "laws", "files")
 is left alone with one of them."""
 STUDIO = sorted(path.name for path in (Path(__file__).parent / "studio").glob("test_*.py"))
 PARTS = 2  # of them: each has a browser and a service
+EACH = 5
+"""Of as many cases of tests that are slow or thinned one is run, and all in `make soak`."""
 BEHIND = 5
 """The niceness of workers that have no test of the studio."""
 APART = ("laws/test_laws.py", "laws/test_determinism.py", "core/test_equilibrium.py")
@@ -91,7 +93,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 
 def more_of_the_thinned(items: list[pytest.Item]) -> list[pytest.Item]:
-    """Of the cases of each test that is slow or thinned all but one of every three: of a slow test the first; of a
+    """Of the cases of each test that is slow or thinned all but one of `EACH`: of a slow test the first; of a
     thinned one the place depends on its name, so that every force is in some of the tests of all forces."""
     cases: dict[str, list[pytest.Item]] = {}
     kept: dict[str, int] = {}
@@ -105,7 +107,7 @@ def more_of_the_thinned(items: list[pytest.Item]) -> list[pytest.Item]:
         item
         for test, same in cases.items()
         for place, item in enumerate(same)
-        if place % 3 != kept[test] % min(3, len(same))
+        if place % EACH != kept[test] % min(EACH, len(same))
     ]
 
 

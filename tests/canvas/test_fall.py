@@ -132,6 +132,7 @@ def rhino() -> Iterator[None]:
     made.remove()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("solver", ["momentum", "relaxation", "newton"])
 def test_an_engine_without_anchors_warns_at_the_start_and_when_it_has_flown_apart(home: Home, solver: str) -> None:
     """Newton's first step has no last good shape but that of before the reset, which began another revision."""

@@ -76,6 +76,7 @@ class Bench(Kangaroo):
         return places(ran(self, tmp_path))
 
 
+@pytest.mark.soak
 def test_classic_forces_between_points_keep_their_laws(tmp_path: Path) -> None:
     """Forces F on points that are held by h move them by F / h."""
     d = Bench("points")

@@ -60,6 +60,7 @@ class Bench(Kangaroo):
             np.testing.assert_allclose(near, place, atol=within)
 
 
+@pytest.mark.soak
 def test_goals_of_points_and_lines_keep_their_laws(tmp_path: Path) -> None:
     """Between anchors of h [N/m] at both ends, a spring k with a misfit e carries k e / (1 + 2 k / h), by hand."""
     d = Bench("lines")

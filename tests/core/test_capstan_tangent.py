@@ -15,6 +15,7 @@ from hookean.system.system import compile
 STEP = 1e-6
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("seed", range(8))
 def test_the_tangent_is_the_gradient_of_the_force(seed: int) -> None:
     """Of cables of up to seven lines, given either way round, that slip over most saddles; to 1e-8 of the largest, by

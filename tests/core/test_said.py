@@ -189,7 +189,7 @@ def test_an_empty_text_is_listed_as_one() -> None:
     assert 'allowed: "", x, y' in refused(scene(anchors=[{**ENDS, "rotations": "w"}]))
 
 
-@pytest.mark.slow
+@pytest.mark.soak
 def test_a_run_that_a_moment_keeps_from_rest_says_how_it_may_end() -> None:
     """A cantilever whose end moment would roll it up to a circle leaves the plane, where the moment has no energy; held
     in the plane it rolls up, as it does with Newton steps that keep an unstable shape."""

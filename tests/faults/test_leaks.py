@@ -80,6 +80,7 @@ def _cycle(served: Served, number: int) -> None:
     assert served.client.delete(f"/v1/sessions/{key}").status_code == 204
 
 
+@pytest.mark.soak
 def test_sessions_made_watched_and_deleted_leave_nothing(running: Served) -> None:
     with ThreadPoolExecutor(8) as several:  # threads that the service keeps once they were needed
         list(several.map(lambda number: _cycle(running, number), range(-8, 0)))

@@ -21,6 +21,7 @@ from hookean_server.workers.analysis_task import ANALYSES
 from .conftest import problem
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("name", ANALYSES)
 def test_an_analysis_is_its_function(client: httpx.Client, name: str) -> None:
     body = ANALYSIS_EXAMPLES[name]

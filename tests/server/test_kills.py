@@ -161,6 +161,7 @@ def swinging() -> dict[str, Any]:
     return scene
 
 
+@pytest.mark.soak
 def test_a_session_goes_on_when_its_process_is_killed(swinging: dict[str, Any]) -> None:
     """The process of a playing session is killed: it goes on by itself, from a checkpoint less than the iterations of
     a second old, with all edits; after a third kill within a minute it waits to be used."""

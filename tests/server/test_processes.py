@@ -219,6 +219,7 @@ def test_a_connection_is_kept_longer_than_clients_keep_it(served: Served) -> Non
     connection.close()
 
 
+@pytest.mark.slow
 @pytest.mark.thinned
 @pytest.mark.parametrize(
     ("what", "number"),

@@ -153,6 +153,7 @@ LIES: dict[str, Callable[[bytes, Found], bytes]] = {
 }
 
 
+@pytest.mark.thinned
 @pytest.mark.parametrize("lie", LIES)
 def test_a_stranger_who_has_the_port_is_sent_no_token(home: Home, tmp_path: Path, lie: str) -> None:
     """Whatever it says: neither the commands nor the client send it the token, nor the key."""

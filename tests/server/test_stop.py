@@ -129,6 +129,7 @@ def test_a_stop_needs_the_token(home: Home) -> None:
     assert process.wait(HANG) == 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, signal.SIGHUP])
 def test_a_session_that_hangs_holds_up_nothing(home: Home, number: int) -> None:
     """Its process is suspended; it is killed with the rest, and the exit code is 0."""

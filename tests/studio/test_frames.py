@@ -92,6 +92,7 @@ def swinging(tab: Studio) -> Studio:
     return tab
 
 
+@pytest.mark.soak
 def test_a_frame_is_read_and_uploaded_whole(swinging: Studio, capsys: pytest.CaptureFixture[str]):
     """Every frame, whole. `make soak` bounds the time of the main thread, on a machine with nothing else to do."""
     page = swinging.page

@@ -36,6 +36,7 @@ def drags(tab: Studio) -> tuple[Studio, list[str], list[int]]:
     return tab, read, sizes
 
 
+@pytest.mark.soak
 def test_a_drag_reads_no_scene_and_is_told_what_has_changed(drags: tuple[Studio, list[str], list[int]]) -> None:
     """One corner of a paused net: its 3 coordinates, 2 springs and the 12 numbers of reactions at most, 8 bytes each
     behind a header of 64. Anchors are read once, when the hand has let go."""

@@ -49,6 +49,7 @@ def session(open_studio: Opened, scene: dict[str, Any], name: str, size: dict[st
     return studio
 
 
+@pytest.mark.soak
 @pytest.mark.parametrize("size", sampled([LAPTOP, PHONE], 2))
 def test_a_refusal_covers_nothing_on_the_start_page(open_studio: Opened, size: dict[str, int]) -> None:
     """Also where the page was scrolled; Esc closes it."""

@@ -69,6 +69,7 @@ def test_who_has_no_token_is_told_what_to_do(open_studio: Opened):
     page.get_by_role("heading", name="Figures").wait_for()
 
 
+@pytest.mark.soak
 def test_the_command_lets_a_browser_in(open_studio: Opened, tmp_path: Path):
     """The file that `hookean studio` gives a browser leads it to the page, logged in; then the file is gone, and the
     address and the history have no code."""
