@@ -213,6 +213,8 @@ export interface Field {
   required?: boolean;
   bounds?: Bounds;
   choices?: string[];
+  /** Of a vector, where they are not x, y and z. */
+  components?: string[];
 }
 
 /** A figure of the gallery. */
