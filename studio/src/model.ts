@@ -39,6 +39,8 @@ export interface Summary {
   undo: number;
   redo: number;
   awake: boolean;
+  /** How long its process has sent nothing [s]; null without a process. Only where the session alone is read. */
+  silence?: number | null;
   /** Sentences of the report. */
   warnings?: string[];
   /** In total [force length] */
@@ -211,6 +213,8 @@ export interface Field {
   required?: boolean;
   bounds?: Bounds;
   choices?: string[];
+  /** Of a vector, where they are not x, y and z. */
+  components?: string[];
 }
 
 /** A figure of the gallery. */

@@ -6,7 +6,7 @@ import { guest, READ_ONLY, spoken } from "./guest";
 import type { Action, Anchor, Patch, Scene, Summary, Topology } from "./model";
 import { note, stats } from "./stats";
 
-/** connecting: the first time; live: numbers are of now; silent: connected, but it plays and nothing comes;
+/** connecting: the first time; live: numbers are of now; silent: connected, it plays or an order waits, nothing comes;
  * lost: it is tried again; locked: no cookie; gone: forgotten by the service; broken: no frame that can be read. */
 export type Connection = "connecting" | "live" | "silent" | "lost" | "locked" | "gone" | "broken";
 
@@ -17,6 +17,8 @@ const SILENCE = 2000;
 const LONGEST_MESSAGE = 48_000;
 
 interface Waiting {
+  /** When it was sent [ms]. */
+  asked: number;
   resolve: (summary: Summary) => void;
   reject: (error: Error) => void;
 }
@@ -79,6 +81,12 @@ export class Session {
     return this.acknowledged;
   }
 
+  /** When the oldest order that waits for its answer was sent [ms]; Infinity where none waits. */
+  get asked(): number {
+    const [oldest] = this.waiting.values();
+    return oldest?.asked ?? Infinity;
+  }
+
   /** Called with every frame that may be shown; returns how to stop it. */
   onFrame(watcher: (frame: Frame) => void): () => void {
     this.watchers.add(watcher);
@@ -98,7 +106,9 @@ export class Session {
     if (action !== "pause" && action !== "step") return this.order(order);
     this.pauses += 1;
     this.pausing += 1;
-    return this.order(order).finally(() => (this.pausing -= 1));
+    // a process that hangs on an order never comes to the next one of this connection
+    const byItself = action === "pause" && this.connection.value === "silent" && !this.readOnly;
+    return (byItself ? this.paused() : this.order(order)).finally(() => (this.pausing -= 1));
   }
 
   /** Edit or act for a control: refusals are shown instead of thrown. */
@@ -310,16 +320,23 @@ export class Session {
       const id = ++this.orders;
       const message = JSON.stringify({ id, ...order });
       if ("edit" in order && message.length > LONGEST_MESSAGE) {
-        const newer = (made: Summary) => {
-          const now = this.summary.value; // a state on the socket may have been faster than the answer
-          return now && now.revision >= made.revision ? now : made;
-        };
-        api.edit(this.key, order.edit).then((made) => resolve(this.acknowledge(newer(made))), reject);
+        api.edit(this.key, order.edit).then((made) => resolve(this.acknowledge(this.newer(made))), reject);
         return;
       }
-      this.waiting.set(id, { resolve, reject });
+      this.waiting.set(id, { asked: performance.now(), resolve, reject });
       this.socket.send(message);
     });
+  }
+
+  /** Pause by another connection than that of the orders. */
+  private async paused(): Promise<Summary> {
+    return this.acknowledge(this.newer((await (await api.act(this.key, "pause")).json()) as Summary));
+  }
+
+  /** How the session stands: a state on the socket may have been faster than the answer to a request. */
+  private newer(made: Summary): Summary {
+    const now = this.summary.value;
+    return now && now.revision > made.revision ? now : made;
   }
 
   private reply(message: Record<string, unknown>): void {
@@ -367,8 +384,8 @@ export class Session {
 
   /** Twice a second: whether frames still come, and the last one's numbers. */
   private listen(): void {
-    const quiet = performance.now() - this.heard > SILENCE;
-    if (this.connection.value === "live" && this.summary.value?.playing && quiet) this.connection.value = "silent";
+    const since = Math.max(this.heard, this.summary.value?.playing ? 0 : this.asked);
+    if (this.connection.value === "live" && performance.now() - since > SILENCE) this.connection.value = "silent";
     if (this.connection.value !== "live") return;
     this.tick();
     const frame = this.frame;

@@ -23,7 +23,8 @@ export async function variant(summary: Summary): Promise<Variant> {
     api.scene(key),
     api.result(key),
   ]);
-  return { summary, topology, anchors, scene, result };
+  const { energy = null } = await api.summary(key); // known now: it is awake
+  return { summary: { ...summary, energy }, topology, anchors, scene, result };
 }
 
 const SEPARATOR = " · ";

@@ -37,6 +37,12 @@ def test_an_entry_says_what_the_class_says(kind: str) -> None:
     json.dumps(found, allow_nan=False)
 
 
+def test_a_vector_that_is_not_along_x_y_and_z_names_its_components() -> None:
+    fields = {f["name"]: f for f in ENTRIES["membrane"]["fields"]}
+    assert fields["prestress"]["components"] == ["warp", "weft", "shear"]
+    assert "components" not in {f["name"]: f for f in ENTRIES["unary"]["fields"]}["vector"]
+
+
 def test_the_fields_of_springs() -> None:
     fields = {f["name"]: f for f in ENTRIES["springs"]["fields"]}
     assert fields["stiffness"] == {

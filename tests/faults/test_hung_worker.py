@@ -9,10 +9,12 @@ from collections.abc import Iterator
 from typing import Any
 
 import httpx
+import numpy as np
 import psutil
 import pytest
 
 from server.conftest import Served, asked, endless
+from server.test_sessions import frame, watch
 from serving import CABLE, HANG, living, wait_for
 
 pytestmark = pytest.mark.skipif(not hasattr(signal, "SIGSTOP"), reason="this system cannot stop a process")
@@ -71,6 +73,31 @@ def test_pause_reaches_a_session_whose_process_hangs(running: Served) -> None:
     went = running.client.post("/v1/sessions/a/step", params={"frames": 2}).json()
     assert went["iteration"] > stands["iteration"] or went["status"] != "running"
     assert running.client.post("/v1/sessions/a/undo").json()["revision"] == 2
+
+
+def test_a_session_reports_how_long_its_process_has_sent_nothing(running: Served) -> None:
+    """A process reports twice a second; a stopped one does not, until it goes on; no process, no silence."""
+    process = _begun(running, "silent")
+
+    def silence() -> float:
+        return float(running.client.get("/v1/sessions/silent").json()["silence"])
+
+    wait_for(lambda: silence() < 0.5)
+    process.send_signal(signal.SIGSTOP)
+    wait_for(lambda: silence() > 1.0)
+    process.send_signal(signal.SIGCONT)
+    wait_for(lambda: silence() < 0.5)
+
+
+def test_a_paused_session_that_lost_its_process_is_seen_where_it_came_back(running: Served) -> None:
+    """Whoever watches gets a frame of the new process, which is at the last checkpoint, though nothing was asked."""
+    process = _begun(running, "watched")
+    with watch(running, "watched") as socket:
+        frame(socket)
+        process.kill()
+        came_back = frame(socket)
+    state = running.client.get("/v1/sessions/watched/state").json()
+    assert np.allclose(came_back.particles, state["particles"], atol=1e-6)  # of single precision
 
 
 def test_others_go_on_while_one_hangs(running: Served) -> None:

@@ -88,6 +88,13 @@ def test_scales_are_chosen_and_their_colours_told_apart_by_any_eyes(open_studio:
     reads("-10", "20")
     scale.select_option("even")
     reads("-100", "100")
+    page.get_by_label("To of the colours").fill("20")
+    page.keyboard.press("Tab")
+    reads("-20", "20")
+    page.get_by_text("1 value beyond").wait_for()
+    page.get_by_label("To of the colours").fill("")
+    page.keyboard.press("Tab")
+    reads("-100", "100")
     assert ends.count() == 1
     colours = linear(stops(studio))
     for eyes in (np.eye(3), *map(np.array, SEEN_BY.values())):

@@ -164,8 +164,9 @@ def test_a_frame_that_cannot_be_read_is_told_of(tab: Studio):
 
 @pytest.mark.slow
 def test_a_session_that_is_slow_is_told_from_one_that_does_not_answer(tab: Studio):
-    """It plays and no frame comes: with a service that answers it is slow; with one that does not, it is not; and
-    the next frame ends both. The age of what is shown is that of its last frame."""
+    """It plays and no frame comes: with a service that answers it is slow; with one whose process sends nothing, or one
+    that does not answer, it is not; and the next frame ends all. The age of what is shown is that of its last frame.
+    Pause goes by another connection, as this one's orders wait for each other."""
     service, page = tab.service, tab.page
     service.put("slow", net(4))
     tab.open("slow")
@@ -176,10 +177,15 @@ def test_a_session_that_is_slow_is_told_from_one_that_does_not_answer(tab: Studi
     wire.keep()
     page.get_by_text("Slow: last update").wait_for()
     assert page.get_by_text("updates arrive slowly").is_visible()
+    hangs = {**service.summary("slow"), "silence": 9.0}
+    page.route(re.compile("/v1/sessions/slow$"), lambda route: route.fulfill(json=hangs))
+    page.get_by_text("in a long step, or hangs").wait_for()
     page.route(re.compile("/v1/sessions/slow$"), lambda route: route.abort())
     page.get_by_text("No answer: last update").wait_for()
-    assert page.get_by_text("the service does not answer").is_visible()
+    page.get_by_text("the service does not answer").wait_for()
     assert int(re.search(r"(\d+) s ago", page.locator(".chip").first.inner_text())[1]) >= 3
+    with page.expect_request(re.compile("/v1/sessions/slow/pause$")):
+        tab.press("Pause")
+    tab.until(lambda: not service.summary("slow")["playing"])
     wire.give()
     page.get_by_text("Live", exact=True).wait_for()
-    tab.press("Pause")

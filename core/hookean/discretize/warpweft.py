@@ -14,7 +14,7 @@ from hookean.errors import InputError
 Index = NDArray[np.int64]
 
 
-def warp_weft(mesh: Any, strict: bool = True) -> tuple[Index, Index]:
+def warp_weft(mesh: Any, strict: bool = True, advice: str = "pass strict=False") -> tuple[Index, Index]:
     """Warp edges `(p, 2)` and weft edges `(q, 2)`; together all edges, each in order of first appearance.
 
     Opposite sides of a quad belong to one family, neighbouring sides to different ones. The first side
@@ -25,7 +25,7 @@ def warp_weft(mesh: Any, strict: bool = True) -> tuple[Index, Index]:
 
     Such families exist only where every inner vertex has an even number of quads, strips that close
     do so untwisted, and no edge has conflicting neighbours. Elsewhere InputError names two quads that
-    disagree; with `strict=False` the family reached first is kept, a deterministic answer.
+    disagree, with `advice`; with `strict=False` the family reached first is kept, a deterministic answer.
     """
     m = as_mesh(mesh)
     sides, first, which = _edges(m)
@@ -39,7 +39,7 @@ def warp_weft(mesh: Any, strict: bool = True) -> tuple[Index, Index]:
             _spread(seed, sides_of, is_quad, neighbours, found)
     family = np.array(found, dtype=np.int64)
     if strict:
-        _check(of, quad, family)
+        _check(of, quad, family, advice)
     _triangles(of, quad, neighbours, family)
     every = sides[first]
     return every[family == 0], every[family == 1]
@@ -68,7 +68,7 @@ def _spread(seed: int, of: list[list[int]], quad: list[bool], neighbours: list[l
                     queue.append(other)
 
 
-def _check(of: Index, quad: NDArray[np.bool_], family: Index) -> None:
+def _check(of: Index, quad: NDArray[np.bool_], family: Index, advice: str) -> None:
     f = family[of]
     wrong = quad & ((f[:, 0] != f[:, 2]) | (f[:, 1] != f[:, 3]) | (f[:, 0] == f[:, 1]))
     if wrong.any():
@@ -79,7 +79,7 @@ def _check(of: Index, quad: NDArray[np.bool_], family: Index) -> None:
         raise InputError(
             f"mesh/faces/{face}",
             f"warp and weft cannot agree between this quad and quad {other}; an inner vertex with an odd number "
-            "of quads or a twisted strip prevents it: remesh there, or pass strict=False",
+            f"of quads or a twisted strip prevents it: remesh there, or {advice}",
         )
 
 

@@ -104,14 +104,20 @@ def grain(force: Membrane, x: Floats, faces: Ints, cloth: tuple[float, float, fl
         return _along(_nearest(np.asarray(force.warp_lines), corners.mean(axis=1)), corners)
     first, last = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 3]
     triangles = faces[:, 2] == faces[:, 3]
-    if not triangles.any():
-        warp = places.warp(faces)
+    isotropic = _isotropic(cloth, np.asarray(force.prestress))
+    try:
+        warp = None if triangles.any() else places.warp(faces)
+    except InputError:
+        if not isotropic:
+            raise
+        return first + last  # as round a corner of a box: no row goes on there, and no direction differs
+    if warp is not None:
         size = len(x)
         known = np.unique(np.sort(warp, axis=1) @ [size, 1])
         side = np.isin(np.sort(faces[:, :2], axis=1) @ [size, 1], known)
         other = corners[:, 2] - corners[:, 1] + corners[:, 3] - corners[:, 0]
         return np.where(side[:, None], first + last, other)
-    if not _isotropic(cloth, np.asarray(force.prestress)):
+    if not isotropic:
         raise InputError("", "a mesh with triangles has no rows for the warp to follow; give warp or warp_lines")
     return first
 

@@ -216,6 +216,7 @@ class Membrane(Force):
         default=np.zeros(3),
         description="Stress of the start shape along warp, along weft, in shear, one or one for each face, or for each "
         "triangle (a quad has four) [force/length]",
+        json_schema_extra={"x-components": ["warp", "weft", "shear"]},
     )
     temperature: float | None = Field(
         default=None, ge=-1e12, le=1e12, description="Change of temperature, of a material [K]"

@@ -148,7 +148,8 @@ def unit(field: FieldInfo) -> str:
 
 
 def field_entry(name: str, field: FieldInfo, described: dict[str, Any]) -> dict[str, Any]:
-    """A field as plain values: name, description, unit, type, required, default, bounds, choices."""
+    """A field as plain values: name, description, unit, type, required, default, bounds, choices, and the
+    names of a vector's components where they are not x, y and z."""
     default = None if field.is_required() else field.default
     kind = _type(described)
     coordinates = name in PLACES and kind in ("points", "lines", "rows of points")
@@ -167,6 +168,8 @@ def field_entry(name: str, field: FieldInfo, described: dict[str, Any]) -> dict[
     choices = [c for o in options for c in o.get("enum", [])]
     if choices:
         found["choices"] = choices
+    if "x-components" in described:
+        found["components"] = described["x-components"]
     return found
 
 

@@ -188,7 +188,8 @@ class Welded:
         from hookean.discretize.warpweft import warp_weft
 
         points = np.zeros((int(faces.max(initial=-1)) + 1, 3))  # only which faces share an edge counts
-        self._warps.append((faces.copy(), warp_weft(Mesh(points, faces))[0]))
+        advice = "give the membrane a warp; nets, shells and soap films need none"
+        self._warps.append((faces.copy(), warp_weft(Mesh(points, faces), advice=advice)[0]))
         return self._warps[-1][1]
 
     def geometry(self, name: str) -> tuple[Floats, Ints]:

@@ -80,6 +80,7 @@ class Awake(Register):
         live.edits = len(found.edits)
         live.scene = live.scene or secrets.token_hex(8)
         live.note(described)
+        live.tell()  # who watches has frames of the last process, which may have been further
         return process
 
     async def _process(self, live: Live) -> SessionProcess:

@@ -66,6 +66,11 @@ class Live:
         return self.starting or self.process is not None
 
     @property
+    def silence(self) -> float | None:
+        """How long its process has sent nothing [s]; None where it has none."""
+        return None if self.process is None else max(0.0, time.monotonic() - self.process.heard)
+
+    @property
     def topology(self) -> str:
         """A tag of its topology."""
         return f"{self.scene}{self.wiring}"

@@ -6,6 +6,7 @@ import asyncio
 import itertools
 import queue
 import threading
+import time
 from collections.abc import Callable
 from concurrent.futures import Future, InvalidStateError
 from contextlib import suppress
@@ -39,7 +40,7 @@ class SessionProcess:
     def __init__(self, memory: int, on_event: Event) -> None:
         self.on_event = on_event
         self.lost = False
-        self.heard = 0.0
+        self.heard = time.monotonic()  # when it last sent anything, which it does twice a second between steps
         self._ids = itertools.count(1)
         self._waiting: dict[int, Future[tuple[dict[str, Any], bytes]]] = {}
         self._orders: queue.SimpleQueue[tuple[dict[str, Any], bytes] | None] = queue.SimpleQueue()
@@ -121,6 +122,7 @@ class SessionProcess:
         with suppress(OSError, EOFError, ValueError):
             while True:
                 head, body = channel.receive(connection)
+                self.heard = time.monotonic()
                 if "id" not in head:
                     self.on_event(head, body)
                 elif (future := self._waiting.get(head["id"])) is not None:

@@ -43,12 +43,19 @@ export function Bar({ studio, title }: { studio: Studio; title: string }) {
   );
 }
 
-/** It plays and nothing comes. The seconds are not read out: they change all the time. */
-function Quiet({ studio: { pulse } }: { studio: Studio }) {
-  const beats = pulse.beats.value;
+/** It plays or an order waits, and nothing comes. The seconds are not read out: they change all the time. */
+function Quiet({ studio: { pulse, session } }: { studio: Studio }) {
+  const beat = pulse.beat.value;
+  const answers = beat === null || beat === "slow";
+  if (!session.summary.value?.playing)
+    return (
+      <>
+        {answers ? "Waiting" : "No answer"} <span aria-hidden="true">for {pulse.age.value} s</span>
+      </>
+    );
   return (
     <>
-      {beats === null ? "Last" : beats ? "Slow: last" : "No answer: last"} update{" "}
+      {beat === null ? "Last" : answers ? "Slow: last" : "No answer: last"} update{" "}
       <span aria-hidden="true">{pulse.age.value} s ago</span>
     </>
   );

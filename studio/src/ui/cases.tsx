@@ -80,7 +80,7 @@ function Shown({ casing, names }: { casing: Casing; names: string[] }) {
               <input
                 type="radio"
                 name="case-column"
-                checked={casing.column.value === column}
+                checked={casing.seen === column}
                 onChange={() => (casing.column.value = column)}
               />
               {titled(column)}

@@ -127,16 +127,21 @@ export class Casing {
     this.options.still.value = null;
   }
 
-  /** Columns that are known of springs. */
+  /** Columns that are known of springs; the form, which bears no case, has no utilisation. */
   get columns(): Column[] {
     const forces = this.solved.value?.form ? (this.solved.value.cases[0]?.result.forces ?? []) : [];
-    const used = forces.some((one) => "utilisation" in one);
+    const used = forces.some((one) => "utilisation" in one) && this.shown.value !== FORM;
     return used ? ["force", "utilisation", "displacement"] : ["force", "displacement"];
+  }
+
+  /** The chosen column, or forces where what is shown has none of it. */
+  get seen(): Column {
+    return this.columns.includes(this.column.value) ? this.column.value : "force";
   }
 
   private show(): void {
     const { topology } = this.session;
-    const [solved, name, column, factor] = [this.solved.value, this.shown.value, this.column.value, this.factor.value];
+    const [solved, name, column, factor] = [this.solved.value, this.shown.value, this.seen, this.factor.value];
     const fits = solved && topology.value?.particles === solved.form.particles.length;
     if (!fits || !name) {
       if (this.coloured) this.uncolour();

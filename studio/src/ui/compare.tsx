@@ -117,7 +117,7 @@ function useDrawn({ options, beside, session }: Studio, found: Variant | null, h
     if (fits && how === "overlay") {
       const { springs, edges, strokes } = form(found.topology);
       options.ghost.value = {
-        name: `Variant ${ownOf(calledOf(found.summary))}`,
+        name: `Variant ${ownOf(calledOf(found.summary)).replace(/^variant /i, "")}`,
         positions: still(found).positions,
         ends: Int32Array.from([...springs, ...edges, ...strokes]),
       };
@@ -226,7 +226,7 @@ function Differences({ studio, other }: { studio: Studio; other: Variant }) {
     ) : (
       <p class="faint">The numbers are read when the form is at rest: press Solve or Pause.</p>
     );
-  const mine: Side = { topology, result };
+  const mine: Side = { topology, result, summary };
   if (!sameUnits(mine, other))
     return <p class="faint">The variant has other units. Give both models the same units to compare them.</p>;
   const moved = apart(mine, other);

@@ -1,11 +1,12 @@
 // Two results side by side, as rows of a table: numbers of the core, with units and differences.
-import type { Result, Topology } from "../model";
+import type { Result, Summary, Topology } from "../model";
 import { stateOf } from "./running";
 import { sum } from "./tabling";
 
 export interface Side {
   topology: Topology;
   result: Result;
+  summary: Summary;
 }
 
 export interface Row {
@@ -31,7 +32,8 @@ const MEASURES: [string, "" | "-" | "length" | "force" | "energy", Measure][] = 
   ["Sum of reactions, x", "force", ({ result }) => total(result, 0)],
   ["Sum of reactions, y", "force", ({ result }) => total(result, 1)],
   ["Sum of reactions, z", "force", ({ result }) => total(result, 2)],
-  ["Energy", "energy", ({ result }) => result.energy["total"] ?? NaN],
+  // null: undefined, as one of the forces has no energy
+  ["Energy", "energy", ({ result, summary }) => (summary.energy === null ? NaN : (result.energy["total"] ?? NaN))],
   ["Residual", "-", ({ result }) => result.residual],
   ["Out of balance", "force", ({ result }) => result.out_of_balance],
   ["Status", "", ({ result }) => stateOf(result)],

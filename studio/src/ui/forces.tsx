@@ -115,6 +115,42 @@ function Column({ session, force, number, units, field, title }: Shown & { field
   }
   if (!isValue(told)) return null;
   const vectors = field.type.startsWith("vector");
+  const live = session.connection.value === "live";
+  if (field.components && isVector(told)) {
+    // of such a vector no length has a meaning: it is led by its largest component
+    const largest = amount(told, false);
+    return (
+      <>
+        {field.components.map((part, at) => (
+          <NumberField
+            key={part}
+            name={`${name} ${part}`}
+            seen={`${seen} ${part}`}
+            value={told[at]!}
+            unit={measure}
+            hint={field.description}
+            disabled={!live}
+            stale={!live}
+            done={(to) => void session.tell(change(told.map((old, other) => (other === at ? (to ?? 0) : old))))}
+          />
+        ))}
+        {largest !== 0 && (
+          <Slider
+            session={session}
+            name={`Largest ${name}`}
+            seen={`Largest ${seen.toLowerCase()}`}
+            value={largest}
+            unit={measure}
+            hint={field.description}
+            note="The others keep their ratios to it."
+            bounds={undefined}
+            log={false}
+            patch={(to) => change(led(told, false, to))}
+          />
+        )}
+      </>
+    );
+  }
   return (
     <>
       {isVector(told) && vectors && (

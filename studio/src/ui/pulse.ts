@@ -4,14 +4,17 @@ import * as api from "../api";
 import type { Session } from "../session";
 
 const AGAIN = 1000;
-/** How long the service may take for an answer [ms]. */
+/** How long the service or the process of the session may send nothing [ms]. */
 const PATIENCE = 3000;
 
+/** slow: its process goes on; stuck: the service answers, but that process sends nothing; gone: no answer. */
+export type Beat = "slow" | "stuck" | "gone";
+
 export class Pulse {
-  /** Since the last frame [s]. */
+  /** Since the last frame, or the order that waits where nothing plays [s]. */
   readonly age = signal(0);
-  /** Whether the service answers that it goes on; null: not known yet. */
-  readonly beats = signal<boolean | null>(null);
+  /** What the service answers; null: not known yet. */
+  readonly beat = signal<Beat | null>(null);
   private last = performance.now();
   private answered = 0;
   private asked = 0;
@@ -24,7 +27,7 @@ export class Pulse {
       effect(() => {
         clearInterval(this.timer);
         this.asked = 0;
-        this.beats.value = null;
+        this.beat.value = null;
         if (session.connection.value !== "silent") return;
         this.answered = performance.now();
         this.timer = window.setInterval(() => this.look(), AGAIN);
@@ -40,8 +43,9 @@ export class Pulse {
 
   private look(): void {
     const now = performance.now();
-    this.age.value = Math.floor((now - this.last) / 1000);
-    if (now - this.answered > PATIENCE) this.beats.value = false;
+    const since = this.session.summary.peek()?.playing ? this.last : Math.min(now, this.session.asked);
+    this.age.value = Math.floor((now - since) / 1000);
+    if (now - this.answered > PATIENCE) this.beat.value = "gone";
     if (!this.asked) void this.ask();
   }
 
@@ -53,6 +57,7 @@ export class Pulse {
     this.asked = 0;
     if (!found) return;
     this.answered = performance.now();
-    this.beats.value = found.awake;
+    const { awake, silence } = found;
+    this.beat.value = !awake ? "gone" : 1000 * (silence ?? 0) > PATIENCE ? "stuck" : "slow";
   }
 }

@@ -1,5 +1,6 @@
 // The status of the session in a sentence, the warnings of its report, and losses.
 import { useEffect } from "preact/hooks";
+import type { Beat } from "./pulse";
 import { isLoose, Repairs } from "./repairs";
 import { tellReturns } from "./returns";
 import { Stable } from "./stable";
@@ -20,8 +21,14 @@ export function Report({ studio }: { studio: Studio }) {
   );
 }
 
-const SLOW = "The session is running, but updates arrive slowly; showing the last received values.";
-const QUIET = "Playing, but the service does not answer; showing the last received values.";
+const SILENT: Record<Beat | "waits", string> = {
+  slow: "The session is running, but updates arrive slowly; showing the last received values.",
+  waits: "The session is still working on the last edit; showing the last received values.",
+  stuck:
+    "The process of this session does not answer: it is in a long step, or hangs. Pause waits for it for 1.5 s, then " +
+    "restarts it at its last checkpoint; edits are kept. Showing the last received values.",
+  gone: "The service does not answer; showing the last received values.",
+};
 
 const LOST = {
   lost:
@@ -38,7 +45,9 @@ function Lost({ studio: { session, pulse } }: { studio: Studio }) {
   const connection = session.connection.value;
   const none = connection === "gone" && !session.summary.value;
   const known = none ? NONE : connection in LOST ? LOST[connection as keyof typeof LOST] : "";
-  const sentence = connection !== "silent" ? known : pulse.beats.value === false ? QUIET : SLOW;
+  const beat = pulse.beat.value ?? "slow";
+  const silent = beat === "slow" && !session.summary.value?.playing ? "waits" : beat;
+  const sentence = connection !== "silent" ? known : SILENT[silent];
   return (
     <>
       <p role="alert" class={session.said.value ? "fault" : "unseen"}>

@@ -1,5 +1,6 @@
 // What was lost when the connection comes back: the last shown state is compared with the present one.
 import { effect } from "@preact/signals";
+import type { Frame } from "../frame";
 import type { Session } from "../session";
 import { tell } from "./notices";
 import { measured } from "./words";
@@ -11,26 +12,34 @@ interface Seen {
   playing: boolean;
 }
 
-/** Show a notice whenever a lost session comes back with an older state; returns how to end this. */
+/** Show a notice whenever a session that was lost or silent comes back with an older state; returns how to end it. */
 export function tellReturns(session: Session): () => void {
   let seen: Seen | null = null;
   let away = false;
+  let silent = false;
+  let last: Frame | null = null;
+  const unit = () => session.topology.value?.units.time ?? "";
   return effect(() => {
     void session.ticks.value;
     const { frame } = session;
     const live = session.connection.value === "live";
     const playing = session.summary.value?.playing ?? false;
     if (!live) {
-      away ||= seen !== null;
+      silent = session.connection.value === "silent";
+      away ||= seen !== null && !silent;
       return;
     }
     if (!frame) return;
     const now = { revision: frame.revision, iteration: frame.iteration, time: frame.time, playing };
+    if (silent && !away && seen && now.revision === seen.revision && now.iteration < seen.iteration)
+      tell("The process of this session was restarted at its last checkpoint.", [since(seen, now, unit())]);
     if (away && seen) {
-      const lost = losses(seen, now, session.topology.value?.units.time ?? "");
+      const lost = losses(seen, now, unit());
       if (lost.length) tell("Reconnected; the service was restarted.", lost);
     }
     away = false;
+    silent &&= frame === last; // until the first frame after the silence
+    last = frame;
     seen = now;
   });
 }
@@ -39,9 +48,10 @@ function losses(seen: Seen, now: Seen, unit: string): string[] {
   const lost: string[] = [];
   if (now.revision < seen.revision)
     lost.push(`Edits after revision ${now.revision} are lost (last shown: ${seen.revision}).`);
-  if (now.iteration < seen.iteration) {
-    lost.push(`The time is ${measured(now.time, unit)} again (last shown: ${measured(seen.time, unit)}).`);
-  }
-  if (seen.playing && !now.playing) lost.push("It was playing and is now paused.");
+  if (now.iteration < seen.iteration) lost.push(since(seen, now, unit));
+  if (seen.playing && !now.playing) lost.push("The session was playing and is now paused.");
   return lost;
 }
+
+const since = (seen: Seen, now: Seen, unit: string) =>
+  `The time is ${measured(now.time, unit)} again (last shown: ${measured(seen.time, unit)}).`;

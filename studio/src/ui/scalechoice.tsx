@@ -4,7 +4,7 @@ import { NumberField } from "./number";
 import type { Studio } from "./studio";
 
 const KINDS: [ScaleKind, string, string][] = [
-  ["auto", "Automatic", "From the smallest to the largest value, about 0 where both signs occur"],
+  ["auto", "Automatic", "From the smallest to the largest value but outliers, about 0 where both signs occur"],
   ["even", "Symmetric about 0", "As far below 0 as above: tension and compression compare by colour"],
   ["log", "Logarithmic", "By the power of ten of the size: small values differ in colour, too"],
 ];

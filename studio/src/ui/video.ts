@@ -2,6 +2,7 @@
 import { ArrayBufferTarget, Muxer } from "webm-muxer";
 import { zipSync } from "three/examples/jsm/libs/fflate.module.js";
 import { extremes } from "../view/extremes";
+import { sizes } from "../view/scaling";
 import { caption } from "./drawing";
 import type { Film } from "./film";
 import type { Studio } from "./studio";
@@ -78,7 +79,8 @@ function sheetOf({ width, height }: HTMLCanvasElement): OffscreenCanvas {
 /** One scale for all pictures: the extremes of the whole recording, where no ends are typed. */
 function fixed(film: Film, scale: Studio["options"]["scale"]["value"], isForce: boolean) {
   if (!isForce) return scale;
-  const ends = film.shots.map(({ frame }) => extremes(frame.springForces)).filter(([low]) => !Number.isNaN(low));
+  const shown = (forces: Float32Array) => (scale.kind === "log" ? sizes(forces) : forces);
+  const ends = film.shots.map(({ frame }) => extremes(shown(frame.springForces))).filter(([low]) => !Number.isNaN(low));
   if (!ends.length) return scale;
   const [low, high] = [Math.min(...ends.map(([low]) => low)), Math.max(...ends.map(([, high]) => high))];
   return high > low ? { ...scale, low: scale.low ?? low, high: scale.high ?? high } : scale;

@@ -50,6 +50,7 @@ export const plain = (sentence: string) =>
     .replace(/^\/(?:draw\/)?add\/(?:forces\/)?\d+(?:\/(\w+))?: (.)/, (_, field: string | undefined, first: string) =>
       field ? `${titled(field)}: ${first}` : first.toUpperCase(),
     )
+    .replace(/\/meshes\/(?:layer:)?(.+?): /g, (_, name: string) => `Mesh ${name}: `)
     .replace(/\/settings\/(\w+)/g, (_, name: string) => `the ${name.replaceAll("_", " ")}`)
     .replace(/\/forces\/(\d+)(?:\/(\w+))?/g, (_, number: string, field?: string) =>
       field ? `${field.replaceAll("_", " ")} of force ${number}` : `force ${number}`,

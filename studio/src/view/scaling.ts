@@ -35,7 +35,8 @@ export class Scaling {
     const { low, high, beyond } = spread(all);
     const typed = this.scale.low !== null || this.scale.high !== null;
     const moved = this.found.take(low, high, resting, now);
-    const count = typed ? outside(all, ...this.ends()).length : beyond;
+    const even = this.scale.kind === "even" && beyond > 0; // values beyond one end may have the sign of the other
+    const count = typed || even ? outside(all, ...this.ends()).length : beyond;
     const isOther = count !== this.outliers;
     this.outliers = count;
     return moved || isOther;
@@ -55,7 +56,8 @@ export class Scaling {
       return { colours: warm, first, last: Math.max(last, first + 1e-3), log: true };
     }
     const largest = Math.max(Math.abs(low), Math.abs(high));
-    if (this.scale.kind === "even" && largest > 0) return { colours: both, first: -largest, last: largest, log: false };
+    if (this.scale.kind === "even" && largest > 0)
+      return { colours: both, first: -largest, last: largest, log: false };
     const typed = this.scale.low !== null || this.scale.high !== null;
     if (!typed || !(low < 0 && high > 0)) return { ...ramp(low, high, dark), log: false };
     // typed ends on both sides of 0: grey stays at 0
@@ -81,16 +83,21 @@ export class Scaling {
     };
   }
 
-  /** The ends as chosen, else as found. */
+  /** The ends as chosen, else as found; the larger one on both sides of 0 on an even scale. */
   private ends(): [number, number] {
     const { low, high } = this.found;
+    if (this.scale.kind === "even") {
+      const chosen = [this.scale.low, this.scale.high].filter((end) => end !== null);
+      const largest = Math.max(...(chosen.length ? chosen : [low, high]).map(Math.abs));
+      return [-largest, largest];
+    }
     const [first, last] = [this.scale.low ?? low, this.scale.high ?? high];
     return first <= last ? [first, last] : [last, first];
   }
 }
 
 /** Sizes of the numbers that have one. */
-const sizes = (values: ArrayLike<number>) => Float64Array.from(values, (value) => Math.abs(value) || NaN);
+export const sizes = (values: ArrayLike<number>) => Float64Array.from(values, (value) => Math.abs(value) || NaN);
 
 /** Strains [-] of springs by their ends and rest lengths; not a number where the rest length is 0. */
 export function strains(p: Float32Array, ends: Int32Array, lengths: Float32Array): Float32Array {
