@@ -8,6 +8,7 @@ vertices so that they stay even (see `even_films`).
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import cached_property, partial
 from typing import Any
 
@@ -303,7 +304,7 @@ def _polished(found: Equilibrium) -> tuple[Equilibrium, float]:
             before, found = found, found.again()
             if not once:
                 found.take_factor(before)
-    result.particles = state.x.copy()
+    result.take_shape(system, state)
     return found, float(lengths(left).max(initial=0.0)) / first if first > 0.0 else 0.0
 
 
@@ -404,8 +405,6 @@ def _slopes(system: System, group: Group, state: State, memory: Floats) -> Float
 
 def _moved(system: System, group: Group, state: State, memory: Floats, corner: int, axis: int, step: Floats) -> Floats:
     """Forces of elements (m, arity, 3), each with one of its corners moved."""
-    from dataclasses import replace
-
     index = group.block.indices
     count, arity = index.shape
     private = state.x[index].reshape(-1, 3).copy()

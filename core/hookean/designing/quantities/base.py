@@ -72,7 +72,7 @@ def measured(quantity: Quantity, found: Equilibrium, pointer: str) -> Floats:
 
 def particle_places(found: Equilibrium, particles: Ints, pointer: str) -> Ints:
     """The coordinates (k, 3) of particles among all; InputError where one does not exist."""
-    n = len(found.x)
+    n = found.system.slots.count
     if len(particles) and particles.max() >= n:
         given = int(particles.max())
         raise InputError(f"{pointer}/particles", f"particle {given} does not exist; there are {n}, counted from 0")
