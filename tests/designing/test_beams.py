@@ -83,3 +83,23 @@ def test_a_particle_of_rotations_is_no_particle() -> None:
     goal = {"kind": "position", "particles": [3], "axes": "z"}
     with pytest.raises(hookean.InputError, match="particle 3 does not exist; there are 3"):
         hookean.sensitivity(SCENE, goals=[goal], variables=PROBLEM["variables"])
+
+
+def test_frequencies_of_loaded_beams() -> None:
+    """A load that has no moment leaves the shape its energy: values are those of `hookean.frequencies` (to 1e-8: 1e-16
+    of the largest stiffness by the least), and slopes differences of them (1e-3 of a value: 1e-6)."""
+    goals = [{"kind": "frequency", "mode": 0}]
+
+    def scene(load: float) -> dict[str, Any]:
+        loaded = [{**BEAM, "Iy": 1e-5}, {**LOAD, "vector": [0, 0, load]}]
+        return {**SCENE, "forces": loaded, "settings": {"tolerance": 1e-12}}
+
+    variables = [{"force": "P", "field": "vector", "axes": "z", "tie": "all"}]
+    found = hookean.sensitivity(scene(-2.0), goals=goals, variables=variables)
+    other = [hookean.frequencies(hookean.Scene.read(scene(load)), count=1).frequencies[0] for load in (-2.0, -2.002)]
+    assert found.value == pytest.approx(other[0], rel=1e-8)
+    before = hookean.frequencies(hookean.Scene.read(scene(-1.998)), count=1).frequencies[0]
+    assert float(found.gradient[0][0]) == pytest.approx((before - other[1]) / 0.004, rel=1e-4)
+    with pytest.raises(hookean.InputError, match="forces without an energy"):
+        turned = [BEAM, {**LOAD, "moment": [0, 0, 1.0]}]
+        hookean.sensitivity({**SCENE, "forces": turned}, goals=goals, variables=variables)

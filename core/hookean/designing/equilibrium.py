@@ -148,7 +148,7 @@ class Equilibrium:
     @property
     def symmetric(self) -> bool:
         """Whether forces come from an energy, so that the tangent is symmetric."""
-        return self.even is None and all(g.cls.conservative or g.cls.constant for g in self.system.groups)
+        return self.even is None and all(g.conservative or g.cls.constant for g in self.system.groups)
 
     @cached_property
     def reduced(self) -> Any:
@@ -382,7 +382,7 @@ def _blocks(system: System, state: State, particles: Ints | None) -> Iterator[tu
             some[particles] = True
             rows = np.flatnonzero(some[group.block.indices].any(axis=1))
             group, memory = Group(group.cls, group.block.some(rows), []), memory[rows]
-        given = system.stiffness_blocks if group.cls.conservative else partial(_slopes, system)
+        given = system.stiffness_blocks if group.conservative else partial(_slopes, system)
         blocks = given(group, state, memory)
         yield (3 * group.block.indices[:, :, None] + np.arange(3)).reshape(len(blocks), -1), blocks
 
