@@ -19,6 +19,7 @@ from hookean.errors import InputError
 from hookean.forces.base import PLACES, Block, Force, Rider
 from hookean.running.patch import changed_forces
 from hookean.scene.catalogue import unit
+from hookean.scene.load_cases import case_loads
 from hookean.scene.scene import Scene
 from hookean.system.group import Group, Part, fitted, ride
 from hookean.system.system import System
@@ -354,7 +355,12 @@ def placed(system: System, number: int, pointer: str) -> tuple[Group, Part]:
         for part in group.parts:
             if part.number == number:
                 return group, part
-    raise InputError(pointer, f"force {number} is a contact; it has no columns that can vary")
+    force = system.scene.forces[number]
+    title = force.name or force.kind_name
+    if number in case_loads(system.scene):
+        said = f"{title} is of load cases, which do not act in the shape that is designed; take it out of them"
+        raise InputError(pointer, said)
+    raise InputError(pointer, f"{title} is a contact or an impulse; it has no columns that can vary or be measured")
 
 
 def numbered(scene: Scene, wanted: Any, pointer: str) -> int:
