@@ -146,9 +146,7 @@ def warnings(found: Equilibrium) -> list[str]:
         said.append(f"the shape is {kind} ({found.result.stability_reason}); its derivatives are those of this shape")
     said += [f"{kind} have yielded; derivatives are those of elastic behaviour from here on" for kind in found.yielded]
     if idle := asleep(found.system.scene):
-        said.append(
-            f"{', '.join(idle)}: of load cases, which do not act in this shape; take out what shall act"
-        )
+        said.append(f"{', '.join(idle)}: of load cases, which do not act in this shape; take out what shall act")
     said += found.resting.said + kinks(found)
     return said
 
