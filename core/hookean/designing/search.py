@@ -24,7 +24,7 @@ from hookean.designing.located import system_of
 from hookean.designing.methods import METHODS, Stopped, Unbounded
 from hookean.designing.polish import polish
 from hookean.designing.problem import Problem
-from hookean.designing.quantities.base import Quantity
+from hookean.designing.quantities.base import Quantity, largest_force
 from hookean.designing.second_look import SADDLE, SYMMETRIC, UNMOVED, saddle, stationary, unmoved
 from hookean.designing.sensitivity import gradients, jacobian
 from hookean.designing.summary import answer
@@ -36,6 +36,7 @@ Floats = NDArray[np.float64]
 EDGE = 1e6  # of its size: no search goes further
 LIMITS = 100  # values of constraints, four times as many where goals have no roots, above which SLSQP takes long
 SLACK = 2e-6  # part of the objective, by which the best may seem better than where a method rests
+SLIGHT = 1e-3  # part of the largest force: forces below are measured by that
 MANY = 40  # unknowns and values of goals, above which derivatives are not dense
 Progress = Callable[[int, float], None]
 """Called with the iteration and the best objective so far."""
@@ -202,9 +203,11 @@ class Search:
         return np.nan_to_num(gradients(found, self.unknowns, kept, self.aims.slopes(found)) * self.scale)
 
     def sized(self, quantity: Quantity, found: Equilibrium, pointer: str) -> float:
-        """What values of a quantity are measured by where they are small: the model's size for lengths, the values
-        themselves for their differences."""
+        """What values of a quantity are measured by where they are small: the model's size for lengths, a part of its
+        largest force for forces, the values themselves for their differences."""
         natural = float(self.system.size) if quantity.unit == "length" else 0.0
+        if quantity.unit == "force":
+            natural = SLIGHT * largest_force(found)
         return max(natural, quantity.differs_from(found, pointer))
 
     def missed(self, found: Equilibrium) -> float:
