@@ -264,3 +264,71 @@ def test_a_minimum_whose_objective_is_rounded_is_one() -> None:
     slope = hookean.sensitivity(found.scene, goals=[goal], variables=[variable])
     by = 2.0 * (slope.value - target) * float(slope.gradient[0][0]) * float(found.variables[0]["value"])
     assert abs(by) < 1e-6 * found.objective
+
+
+STAY = {"kind": "springs", "name": "stay", "particles": [[1, 3]], "stiffness": 50.0, "rest_length": 1.6}
+
+
+def stayed(load: float) -> dict[str, Any]:
+    """A string with a stay of 1.6 from 1 above its middle: it carries where that hangs 0.6 deep at least."""
+    scene = string(load=load, rest=0.8, stiffness=10.0)
+    scene["particles"].append([0, 0, 1.0])
+    scene["forces"].append({**STAY, "tension_only": True})
+    scene["anchors"][0]["particles"].append(3)
+    return scene
+
+
+def load_at(force: float) -> float:
+    """The load at which the stay carries a force: it hangs d = 0.6 + force / 50 deep, V = 2 N d / l + force."""
+    d = 0.6 + force / 50.0
+    length = math.hypot(1.0, d)
+    return 2.0 * 10.0 * (length - 0.8) * d / length + force
+
+
+def test_a_stay_that_is_slack_at_the_start_is_tightened() -> None:
+    """No variable changes the force of a stay that hangs slack; a search from other values of the load finds the one
+    at which it carries 2, as goal and as limit."""
+    variable = {**LOAD, "upper": 0.0}
+    stay = {"kind": "force", "force": "stay"}
+    found = design(stayed(-2.0), [variable], [{**stay, "target": 2.0}])
+    assert (found.status, found.goals[0]["met"]) == ("converged", True)
+    assert found.variables[0]["value"] == pytest.approx(-load_at(2.0), rel=1e-6)
+    assert [said for said in found.warnings if "no variable changes goal force at the values of the scene" in said]
+    found = design(stayed(-2.0), [variable], [], [{**stay, "lower": 2.0}])
+    assert found.status == "converged" and found.variables[0]["value"] <= -load_at(2.0) * (1.0 - 1e-6)
+    least = {**stay, "lower": 2.0}
+    found = design(
+        stayed(-2.0), [variable], [{"kind": "position", "particles": [1], "axes": "z", "target": 0}], [least]
+    )
+    assert (found.status, found.variables[0]["value"]) == ("converged", pytest.approx(-load_at(2.0), rel=1e-5))
+
+
+def test_what_no_start_reaches_is_said() -> None:
+    """Where the stay stays slack at all loads within the bounds the message does not end with the limit alone."""
+    stay = {"kind": "force", "force": "stay"}
+    variable = {**LOAD, "lower": -3.0, "upper": 0.0}
+    said = "at this shape, where it is 0: its elements carry nothing; values at which they do may change it"
+    found = design(stayed(-2.0), [variable], [], [{**stay, "lower": 2.0}])
+    assert found.status == "infeasible" and f"no variable changes constraint force {said}" in found.warnings
+    found = design(stayed(-2.0), [variable], [{**stay, "target": 2.0}])
+    assert found.status == "converged" and f"no variable changes goal force {said}" in found.warnings
+
+
+@pytest.mark.slow
+def test_a_search_from_elsewhere_keeps_what_is_better_and_can_be_stopped() -> None:
+    """Progress never shows more than before, what is kept is never worse, and a caller may end it."""
+    problem = {
+        "scene": stayed(-2.0),
+        "variables": [{**LOAD, "upper": 0.0}],
+        "goals": [{"kind": "force", "force": "stay", "target": 2.0}],
+    }
+    shown: list[tuple[int, float]] = []
+    kept: list[float] = []
+    found = hookean.design(problem, progress=lambda i, v: shown.append((i, v)), keep=lambda u: kept.append(float(u[0])))
+    assert [v for _, v in shown] == sorted((v for _, v in shown), reverse=True)
+    assert [i for i, _ in shown] == sorted(i for i, _ in shown)
+    assert kept[0] == -2.0 and kept[-1] == pytest.approx(found.variables[0]["value"])
+    first = next(i for i, (_, v) in enumerate(shown) if v < 4.0)
+    calls = iter(range(10**6))
+    stopped = hookean.design(problem, cancelled=lambda: next(calls) > first + 17)
+    assert stopped.status in ("cancelled", "converged") and stopped.objective <= 4.0
