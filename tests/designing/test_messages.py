@@ -117,3 +117,27 @@ def test_no_tolerance_or_weight_makes_a_search_warn() -> None:
     assert [str(f.status) for f in found] == 3 * ["converged"]
     values = [f.variables[0]["value"] for f in found]
     np.testing.assert_allclose(values, values[0], rtol=1e-9)  # sag by rest length: 1 to 3; the search ends below 1e-9
+
+
+def test_loads_of_load_cases_are_told_of() -> None:
+    """They do not act in the shape that is designed: a sentence where nothing needs them, an error where something
+    does."""
+    given = problem()
+    given["scene"] |= {"load_cases": {"snow": {"forces": ["l"]}}}
+    said = "l: of load cases, which do not act in this shape"
+    assert [w for w in hookean.design(given).warnings if w.startswith(said)]
+    assert [w for w in hookean.sensitivity(given).warnings if w.startswith(said)]
+    for parts, pointer in (
+        ({"variables": [{"force": "l", "field": "vector"}]}, "/variables/0/force"),
+        ({"goals": [{"kind": "output", "force": "l", "column": "force"}]}, "/goals/0/force"),
+    ):
+        with pytest.raises(InputError, match="l is of load cases, which do not act") as refused:
+            hookean.design({**given, **parts})
+        assert refused.value.pointer == pointer
+
+
+def test_contacts_have_no_columns_that_vary() -> None:
+    given = problem(variables=[{"force": "floor", "field": "stiffness"}])
+    given["scene"]["forces"].append({"kind": "floor", "point": [0, 0, -9], "normal": [0, 0, 1]})
+    with pytest.raises(InputError, match="floor is a contact or an impulse; it has no columns"):
+        hookean.sensitivity(given)

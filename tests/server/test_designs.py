@@ -72,6 +72,22 @@ def test_the_answer_is_that_of_the_core(jobs: httpx.Client) -> None:
     assert jobs.get(f"{again}/results/0").json() == here
 
 
+def test_beams_are_designed(jobs: httpx.Client) -> None:
+    """Their rows of rotations are not among the particles of the answer."""
+    beam = {"kind": "beam", "name": "b", "particles": [[0, 1]], "E": 1e6, "G": 4e5, "A": 0.01, "Iy": 1e-5, "Iz": 1e-5}
+    scene = {
+        "particles": [[0, 0, 0], [1, 0, 0]],
+        "forces": [{**beam, "J": 1e-5}, {"kind": "unary", "particles": [1], "vector": [0, 0, -0.1]}],
+        "anchors": [{"particles": [0], "rotations": "xyz"}],
+    }
+    variables = [{"force": "b", "field": "Iy", "tie": "all", "lower": 1e-7, "upper": 1e-3}]
+    goals = [{"kind": "position", "particles": [1], "axes": "z", "target": -0.01}]
+    address = jobs.post("/v1/design", json={"scene": scene, "variables": variables, "goals": goals}).headers["location"]
+    assert ended(jobs, address)["status"] == "done"
+    found = jobs.get(f"{address}/results/0").json()
+    assert np.shape(found["result"]["particles"]) == (2, 3) and found["status"] == "converged"
+
+
 def test_one_key_is_one_job(jobs: httpx.Client) -> None:
     first, second = (jobs.post("/v1/design", json=PROBLEM, headers={"idempotency-key": "k"}) for _ in range(2))
     assert first.headers["location"] == second.headers["location"]

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from hookean.designing.equilibrium import Equilibrium
 from hookean.designing.problem import Goal, Problem
-from hookean.designing.quantities.base import Quantity, measured
+from hookean.designing.quantities.base import Quantity, largest_force, measured
 from hookean.errors import InputError
 
 Floats = NDArray[np.float64]
@@ -58,7 +58,8 @@ class Aims:
             return -np.inf
         whole = 0.0
         for i, (goal, own) in enumerate(zip(self.goals, self.values(found), strict=True)):
-            least = goal.quantity.differs_from(found, f"/goals/{i}")
+            forces = largest_force(found) if goal.quantity.unit == "force" else 0.0
+            least = max(forces, goal.quantity.differs_from(found, f"/goals/{i}"))
             whole += goal.weight * float(np.maximum(own**2, least**2).sum())
         return ROUNDED**2 * whole
 

@@ -7,18 +7,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from functools import cache, cached_property
-from typing import TYPE_CHECKING, Annotated, Any
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import TypeAdapter, ValidationError
 
+from hookean.designing.ranges import natural
 from hookean.designing.readers import readers
 from hookean.errors import InputError
 from hookean.forces.base import PLACES, Block, Force, Rider
 from hookean.running.patch import changed_forces
 from hookean.scene.catalogue import unit
+from hookean.scene.load_cases import case_loads
 from hookean.scene.scene import Scene
 from hookean.system.group import Group, Part, fitted, ride
 from hookean.system.system import System
@@ -32,7 +33,8 @@ Ints = NDArray[np.int64]
 Give = Callable[[Force | None, Block], Floats]
 
 STEP = 1e-5  # of a value, and of the mean of its column: the error is its square, and rounding 1e-11
-JUMP = 1e-9  # part of the values: what is less is rounding
+NOTHING = 1e-9  # part of the first values: means that are less are 0 but for rounding
+JUMP = 1e-7  # part of the values: what is less is rounding
 MANY = 40  # unknowns of a force as a whole, above which it pays to find the elements that each number changes
 AXES = {"x": 0, "y": 1, "z": 2}
 
@@ -109,7 +111,11 @@ class Column:
         columns = np.array([AXES[a] for a in variable.axes]) if wide == 3 else np.arange(wide)
         self.entries = Entries(values, tied(variable, len(values), columns, wide, pointer))
         self.shape = shape_of(len(columns), self.entries.count, wide > 1)
-        self.lower = self._least(system)
+        whole = self.entries.values
+        self.lower, self.upper = natural(
+            type(self.force), variable.field, whole, lambda v: self._accepts(system, self._field(v))
+        )
+        self.size = float(np.abs(whole).mean()) or 1.0
         self._readers: list[Ints | None] = []
 
     @property
@@ -154,16 +160,6 @@ class Column:
         except InputError:
             return False
         return True
-
-    def _least(self, system: System) -> float:
-        """0 where the column takes no negative numbers, else -inf."""
-        values = self.entries.values
-        if (values < 0.0).any() or not values.size:
-            return -np.inf
-        if _refuses_negatives(type(self.force), self.variable.field):
-            return 0.0
-        shifted = values - 1.0 - 2.0 * values.max()  # all together: of the vertices of a solid it stays one
-        return -np.inf if self._accepts(system, self._field(shifted)) else 0.0
 
     def _field(self, values: Floats) -> Any:
         """Numbers (m, c) in the shape that the field takes."""
@@ -256,7 +252,7 @@ class Column:
     def _steps(self, column: int) -> Floats:
         """Changes of the numbers (m,) of the column, small for derivatives."""
         size = np.abs(self.entries.values[:, column])
-        return np.asarray(STEP * np.maximum(size, size.mean() or 1.0))
+        return np.asarray(STEP * np.maximum(size, self._typical(size)))
 
     def _units(self, system: System) -> list[tuple[int, Block]]:
         """Where forces are linear in the column: each number of it that varies, with a block in which that is 1 and the
@@ -285,8 +281,13 @@ class Column:
 
     def step(self, unknown: int) -> float:
         """A change of one unknown, small for derivatives."""
-        mean = float(np.abs(self.entries.start).mean()) or 1.0
-        return STEP * max(abs(float(self.entries.start[unknown])), mean)
+        start = np.abs(self.entries.start)
+        return STEP * max(float(start[unknown]), self._typical(start))
+
+    def _typical(self, sizes: Floats) -> float:
+        """The mean of sizes; that of the first values where it is 0 but for rounding."""
+        mean = float(sizes.mean())
+        return mean if mean > NOTHING * self.size else self.size
 
     def slope(self, system: System, change: Floats, give: Give) -> Floats:
         """By how much what `give` says changes with a change (m, c) of the values: differences of second order, on one
@@ -294,6 +295,8 @@ class Column:
         values = self.entries.values
         both = (values - change >= self.lower).all()
         ways = ((0.5, 1.0), (-0.5, -1.0)) if both else ((-1.5, 0.0), (2.0, 1.0), (-0.5, 2.0))
+        if both and (values + change > self.upper).any():
+            ways = ((1.5, 0.0), (-2.0, -1.0), (0.5, -2.0))
         given = []
         for _, way in ways:
             if way == 0.0:
@@ -301,35 +304,18 @@ class Column:
                 continue
             force = self._with(system.scene, values + way * change)
             given.append(give(force, compiled(system, self.group, self.number, force)))
-        if not both:
-            self._check_smooth(given)
+        if len(ways) == 3:
+            self._check_smooth(given, self.upper if both else self.lower)
         return np.asarray(sum(weight * each for (weight, _), each in zip(ways, given, strict=True)))
 
-    def _check_smooth(self, given: list[Floats]) -> None:
-        """InputError where values at 0, 1 and 2 steps from the least value do not follow a smooth curve."""
+    def _check_smooth(self, given: list[Floats], end: float) -> None:
+        """InputError where values at 0, 1 and 2 steps from the end of the range do not follow a smooth curve."""
         near, far = np.abs(given[1] - given[0]), np.abs(given[2] - given[1])
         size = max(float(np.abs(each).max(initial=0.0)) for each in given)
         if ((np.abs(near - far) > 0.5 * np.maximum(near, far)) & (np.maximum(near, far) > JUMP * size)).any():
             name = self.variable.field
-            said = f"{name} is {self.lower:g}, where {self.force.kind_name} changes by a jump; give it a value beyond,"
+            said = f"{name} is {end:g}, where {self.force.kind_name} changes by a jump; give it a value beyond,"
             raise InputError(f"{self.pointer}/field", f"{said} or leave such elements out by tie")
-
-
-@cache
-def _refuses_negatives(cls: type[Force], field: str) -> bool:
-    """Whether a field by itself takes the number 1, and not -1; the force as a whole may refuse more."""
-    info = cls.model_fields[field]
-    given: Any = Annotated[info.annotation, info]
-    check: TypeAdapter[Any] = TypeAdapter(given)
-    try:
-        check.validate_python(1.0)
-    except ValidationError:
-        return False
-    try:
-        check.validate_python(-1.0)
-    except ValidationError:
-        return True
-    return False
 
 
 def shape_of(columns: int, count: int, wide: Any) -> tuple[int, ...]:
@@ -354,7 +340,12 @@ def placed(system: System, number: int, pointer: str) -> tuple[Group, Part]:
         for part in group.parts:
             if part.number == number:
                 return group, part
-    raise InputError(pointer, f"force {number} is a contact; it has no columns that can vary")
+    force = system.scene.forces[number]
+    title = force.name or force.kind_name
+    if number in case_loads(system.scene):
+        said = f"{title} is of load cases, which do not act in the shape that is designed; take it out of them"
+        raise InputError(pointer, said)
+    raise InputError(pointer, f"{title} is a contact or an impulse; it has no columns that can vary or be measured")
 
 
 def numbered(scene: Scene, wanted: Any, pointer: str) -> int:

@@ -41,7 +41,7 @@ class Cycles:
             return self._linear(() if method is None else method.solved)
         groups = zip(system.groups, state.memory, strict=True)
         alone = all(group.cls.gathered(group.block, memory, state.x, None) is None for group, memory in groups)
-        conservative = all(group.cls.conservative or group.cls.constant for group in system.groups)
+        conservative = all(group.conservative or group.cls.constant for group in system.groups)
         if not conservative or not alone or multilevel.Method().refuse(system):
             return False
         from hookean.linear.tangent import Tangent

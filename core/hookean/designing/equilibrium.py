@@ -8,6 +8,7 @@ vertices so that they stay even (see `even_films`).
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import replace
 from functools import cached_property, partial
 from typing import Any
 
@@ -147,7 +148,7 @@ class Equilibrium:
     @property
     def symmetric(self) -> bool:
         """Whether forces come from an energy, so that the tangent is symmetric."""
-        return self.even is None and all(g.cls.conservative or g.cls.constant for g in self.system.groups)
+        return self.even is None and all(g.conservative or g.cls.constant for g in self.system.groups)
 
     @cached_property
     def reduced(self) -> Any:
@@ -303,7 +304,7 @@ def _polished(found: Equilibrium) -> tuple[Equilibrium, float]:
             before, found = found, found.again()
             if not once:
                 found.take_factor(before)
-    result.particles = state.x.copy()
+    result.take_shape(system, state)
     return found, float(lengths(left).max(initial=0.0)) / first if first > 0.0 else 0.0
 
 
@@ -381,7 +382,7 @@ def _blocks(system: System, state: State, particles: Ints | None) -> Iterator[tu
             some[particles] = True
             rows = np.flatnonzero(some[group.block.indices].any(axis=1))
             group, memory = Group(group.cls, group.block.some(rows), []), memory[rows]
-        given = system.stiffness_blocks if group.cls.conservative else partial(_slopes, system)
+        given = system.stiffness_blocks if group.conservative else partial(_slopes, system)
         blocks = given(group, state, memory)
         yield (3 * group.block.indices[:, :, None] + np.arange(3)).reshape(len(blocks), -1), blocks
 
@@ -404,8 +405,6 @@ def _slopes(system: System, group: Group, state: State, memory: Floats) -> Float
 
 def _moved(system: System, group: Group, state: State, memory: Floats, corner: int, axis: int, step: Floats) -> Floats:
     """Forces of elements (m, arity, 3), each with one of its corners moved."""
-    from dataclasses import replace
-
     index = group.block.indices
     count, arity = index.shape
     private = state.x[index].reshape(-1, 3).copy()

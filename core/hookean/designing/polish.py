@@ -36,6 +36,7 @@ DAMPINGS = (0.0, *(10.0**-k for k in range(10, 0, -1)))  # parts of the largest 
 SHORT = (1e-3, 1e-4, 1e-5, 1e-6)  # of an unknown's size, of steps straight down: near a snap, where nothing else leads
 SHORTER = (1.0, 0.9, 0.5)  # parts of a step to a limit, which may be nearer than by its slope
 BACK = 3  # ways back to limits after a step
+NOISE = 1e-10  # part of the objective by which it may differ at one shape, found on two ways
 GAIN = 1e-12  # part of the objective: a step that gains less is the last
 
 
@@ -99,14 +100,22 @@ def limits_at(search: Search, found: Equilibrium) -> tuple[Floats, Floats, Float
 def _step(search: Search, here: Here) -> bool:
     """One step; whether another one may gain more."""
     before, value = _merit(search, here, here.y), abs(search.best[1])
-    for step in _newton(search, here):
+    for number, step in enumerate(_newton(search, here)):
         y = np.clip(here.y + step, *search.bounds)
         for end in (_onto_limits(search, here, y), y) if len(here.rows) else (y,):
             merit = _merit(search, here, end)
-            if merit < before:
+            if merit < before or (number == 0 and merit - before <= NOISE * value and _flatter(search, here, end)):
                 search.take(end)
                 return before - merit > GAIN * value
     return False
+
+
+def _flatter(search: Search, here: Here, y: Floats) -> bool:
+    """Whether the slope that is left is less by half: objectives that differ by rounding do not tell which is nearer to
+    the minimum."""
+    across = null(here.by[here.rows][:, here.free])
+    left = [across.T @ slope[here.free] for slope in (here.slope, _lagrangian(search, here, search.at(y)))]
+    return bool(np.linalg.norm(left[1]) <= 0.5 * np.linalg.norm(left[0]))
 
 
 def _onto_limits(search: Search, here: Here, y: Floats) -> Floats:

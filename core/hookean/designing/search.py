@@ -8,13 +8,14 @@ SciPy, and with many constraints an augmented Lagrangian, with exact derivatives
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from hookean.designing.aims import Aims
 from hookean.designing.answer import Design, DesignStatus
+from hookean.designing.elsewhere import AGAIN, other_start
 from hookean.designing.equilibrium import Equilibrium, follow, settle
 from hookean.designing.factors import Orders
 from hookean.designing.gains import at_minimum
@@ -24,7 +25,7 @@ from hookean.designing.located import system_of
 from hookean.designing.methods import METHODS, Stopped, Unbounded
 from hookean.designing.polish import polish
 from hookean.designing.problem import Problem
-from hookean.designing.quantities.base import Quantity
+from hookean.designing.quantities.base import Quantity, largest_force
 from hookean.designing.second_look import SADDLE, SYMMETRIC, UNMOVED, saddle, stationary, unmoved
 from hookean.designing.sensitivity import gradients, jacobian
 from hookean.designing.summary import answer
@@ -35,7 +36,9 @@ from hookean.system.system import System
 Floats = NDArray[np.float64]
 EDGE = 1e6  # of its size: no search goes further
 LIMITS = 100  # values of constraints, four times as many where goals have no roots, above which SLSQP takes long
+FALL = 1e-6  # part of the objective that a search from elsewhere has to gain
 SLACK = 2e-6  # part of the objective, by which the best may seem better than where a method rests
+SLIGHT = 1e-3  # part of the largest force: forces below are measured by that
 MANY = 40  # unknowns and values of goals, above which derivatives are not dense
 Progress = Callable[[int, float], None]
 """Called with the iteration and the best objective so far."""
@@ -70,6 +73,8 @@ class Search:
         self._resting: Floats | None = None
         self._best_x: Floats | None = None
         self.evaluations, self.used = 0, ""
+        self.notes: list[str] = []
+        """Sentences for the answer."""
         self.best: tuple[float, float, Floats] = (np.inf, np.inf, self.unknowns.start.copy())
         self.first = self.at(np.zeros(self.unknowns.count))
         self.aims = Aims(problem, self.first)
@@ -202,9 +207,11 @@ class Search:
         return np.nan_to_num(gradients(found, self.unknowns, kept, self.aims.slopes(found)) * self.scale)
 
     def sized(self, quantity: Quantity, found: Equilibrium, pointer: str) -> float:
-        """What values of a quantity are measured by where they are small: the model's size for lengths, the values
-        themselves for their differences."""
+        """What values of a quantity are measured by where they are small: the model's size for lengths, a part of its
+        largest force for forces, the values themselves for their differences."""
         natural = float(self.system.size) if quantity.unit == "length" else 0.0
+        if quantity.unit == "force":
+            natural = SLIGHT * largest_force(found)
         return max(natural, quantity.differs_from(found, pointer))
 
     def missed(self, found: Equilibrium) -> float:
@@ -259,35 +266,80 @@ def design(
     best shape so far; failure is the status and the message. Raises InputError where the problem does not fit its
     scene.
     """
-    problem = Problem.read(problem)
-    search = Search(problem, progress, cancelled, start=start, keep=keep)
+    search = Search(Problem.read(problem), progress, cancelled, start=start, keep=keep)
+    ended = _ended(search)
+    if ended.elsewhere is not None:
+        again = _from(search, ended.elsewhere, keep)
+        other = _ended(again)
+        if again.best[:2] < (search.best[0], search.best[1] - FALL * abs(search.best[1])):
+            again.notes = [AGAIN.format(ended.still)]
+            search, ended = again, other._replace(iterations=ended.iterations + other.iterations)
+    return answer(search, ended.method, ended.iterations, ended.status, ended.said)
+
+
+class Ended(NamedTuple):
+    """How a search ended; `elsewhere`: values (u,) from which another one may change what none changes, `still`."""
+
+    method: str
+    iterations: int
+    status: DesignStatus
+    said: str
+    elsewhere: Floats | None
+    still: str
+
+
+def _ended(search: Search) -> Ended:
+    """The search by the method of its problem."""
     method = chosen(search)
-    ended: DesignStatus | None = None
-    iterations, said = 0, ""
-    if not search.first.converged:
-        ended, said = DesignStatus.STALLED, f"The start has no equilibrium. {search.first.result.message}"
-    else:
+    status, elsewhere, still = DesignStatus.STALLED, None, ""
+    iterations, said = 0, f"The start has no equilibrium. {search.first.result.message}"
+    if search.first.converged:
         try:
-            iterations, ended, said = METHODS[method](search)
+            iterations, status, said = METHODS[method](search)
             if method in ("l-bfgs-b", "slsqp", "augmented_lagrangian"):
                 search.check_end()
-            if ended in (DesignStatus.CONVERGED, DesignStatus.STALLED):
-                polish(search)
-            if ended is DesignStatus.STALLED and at_minimum(search):
-                ended, said = DesignStatus.CONVERGED, ""
-            if ended is DesignStatus.CONVERGED and stationary(search):
-                ended, said = DesignStatus.STALLED, SYMMETRIC
-            if ended is DesignStatus.CONVERGED and saddle(search):
-                ended, said = DesignStatus.STALLED, SADDLE
-            if ended is DesignStatus.INFEASIBLE and unmoved(search):
-                ended, said = DesignStatus.STALLED, UNMOVED
+            status, said = _looked_again(search, status, said)
+            if status in (DesignStatus.CONVERGED, DesignStatus.INFEASIBLE) and not said:
+                elsewhere, still = other_start(search)
         except Stopped:
-            ended, said = DesignStatus.CANCELLED, "Stopped by the caller."
+            status, said = DesignStatus.CANCELLED, "Stopped by the caller."
         except Unbounded as error:
-            ended, said = DesignStatus.UNBOUNDED, f"{error}."
+            status, said = DesignStatus.UNBOUNDED, f"{error}."
             if search.best[0] > 0.0:  # what grows are penalties
-                ended, said = DesignStatus.INFEASIBLE, ""
-    return answer(search, search.used or method, iterations or search.evaluations, ended, said)
+                status, said = DesignStatus.INFEASIBLE, ""
+    return Ended(search.used or method, iterations or search.evaluations, status, said, elsewhere, still)
+
+
+def _looked_again(search: Search, ended: DesignStatus, said: str) -> tuple[DesignStatus, str]:
+    """The last digits, and whether the end is what it seems."""
+    if ended in (DesignStatus.CONVERGED, DesignStatus.STALLED):
+        polish(search)
+    if ended is DesignStatus.STALLED and at_minimum(search):
+        ended, said = DesignStatus.CONVERGED, ""
+    if ended is DesignStatus.CONVERGED and stationary(search):
+        ended, said = DesignStatus.STALLED, SYMMETRIC
+    if ended is DesignStatus.CONVERGED and saddle(search):
+        ended, said = DesignStatus.STALLED, SADDLE
+    if ended is DesignStatus.INFEASIBLE and unmoved(search):
+        ended, said = DesignStatus.STALLED, UNMOVED
+    return ended, said
+
+
+def _from(before: Search, start: Floats, keep: Keep | None) -> Search:
+    """A search of the same problem from other values; it shows and keeps what is better than the one before."""
+    (missed, least, _), progress = before.best, before.progress
+
+    def better(values: Floats) -> None:
+        if keep is not None and again.best[:2] < (missed, least):
+            keep(values)
+
+    def shown(iteration: int, value: float) -> None:
+        if progress is not None:
+            progress(before.evaluations + iteration, value if missed > 0.0 else min(least, value))
+
+    again = Search(before.problem, shown, before.cancelled, start=start)
+    again.keep = better
+    return again
 
 
 def chosen(search: Search) -> str:

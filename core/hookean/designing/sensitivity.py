@@ -20,6 +20,7 @@ from hookean.designing.quantities.base import Quantity, measured
 from hookean.designing.unknowns import Unknowns
 from hookean.errors import InputError
 from hookean.running.result import Result
+from hookean.scene.load_cases import asleep
 from hookean.stability.equilibrium import Stability
 
 Floats = NDArray[np.float64]
@@ -144,6 +145,8 @@ def warnings(found: Equilibrium) -> list[str]:
         kind = "unstable" if found.result.stability is Stability.UNSTABLE else "a mechanism"
         said.append(f"the shape is {kind} ({found.result.stability_reason}); its derivatives are those of this shape")
     said += [f"{kind} have yielded; derivatives are those of elastic behaviour from here on" for kind in found.yielded]
+    if idle := asleep(found.system.scene):
+        said.append(f"{', '.join(idle)}: of load cases, which do not act in this shape; take out what shall act")
     said += found.resting.said + kinks(found)
     return said
 

@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.designing.answer import Design, DesignStatus, once
+from hookean.designing.elsewhere import sentences
 from hookean.designing.gains import Gains, gains
 from hookean.designing.limits import AT_BOUND, FAR, LIMIT, beyond
 from hookean.designing.second_look import UNMOVED, not_found_again
-from hookean.designing.sensitivity import gradients, warnings
+from hookean.designing.sensitivity import warnings
 
 if TYPE_CHECKING:
     from hookean.designing.equilibrium import Equilibrium
@@ -20,9 +21,7 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 Entries = list[dict[str, Any]]
 
-FLAT = 1e-12  # part of what a goal misses: variables that change it by less for each of their sizes do not change it
 LISTED = 10  # names in a sentence
-SEED = 5  # of the sum of a goal's values with which that is checked
 
 
 def answer(search: Search, method: str, iterations: int, ended: DesignStatus, said: str) -> Design:
@@ -58,7 +57,8 @@ def answer(search: Search, method: str, iterations: int, ended: DesignStatus, sa
         warnings=[
             *warnings(found),
             *search.unknowns.differing,
-            *_out_of_reach(search, found, goals),
+            *search.notes,
+            *sentences(search, found),
             *(_far(search, y) if ended is DesignStatus.CONVERGED else []),
             *again,
         ],
@@ -73,20 +73,6 @@ def _far(search: Search, y: Floats) -> list[str]:
     names = [name for name, part in parts if far[part].any()]
     said = f"went beyond {FAR:g} times its size, where the objective hardly falls any more; give it bounds"
     return [f"{name} {said}" for name in names]
-
-
-def _out_of_reach(search: Search, found: Equilibrium, goals: Entries) -> list[str]:
-    """A sentence for each goal that is not met, and whose values no variable changes: by a random sum of those."""
-    said, rng = [], np.random.default_rng(SEED)
-    values = search.aims.values(found)
-    for i, (entry, own, missed) in enumerate(zip(goals, values, search.aims.missed(values), strict=True)):
-        if entry["met"] is not False or missed is None or not found.converged:
-            continue
-        weights = np.where(missed != 0.0, rng.uniform(0.5, 1.5, len(own)), 0.0)
-        slopes = gradients(found, search.unknowns, [(search.problem.goals[i].quantity, f"/goals/{i}")], [weights])
-        if np.abs(slopes * search.scale).max(initial=0.0) <= FLAT * float(np.abs(missed).max()):
-            said.append(f"no variable changes goal {entry['name']} at this shape")
-    return said
 
 
 def _sentence(ended: DesignStatus, broken: list[str], iterations: int, value: float) -> str:

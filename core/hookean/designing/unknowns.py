@@ -141,10 +141,14 @@ class Unknowns:
         for variable, part in zip(self.variables, self.slices, strict=True):
             given = variable.variable
             lower[part] = variable.lower if given.lower is None else max(variable.lower, given.lower)
-            upper[part] = np.inf if given.upper is None else given.upper
+            most = variable.upper if isinstance(variable, Column) else np.inf
+            upper[part] = most if given.upper is None else min(most, given.upper)
             if given.upper is not None and given.upper < variable.lower:
                 said = f"{given.upper:g} given; {given.field} is at least {variable.lower:g}"
                 raise InputError(f"{variable.pointer}/upper", said)
+            if given.lower is not None and given.lower > most:
+                said = f"{given.lower:g} given; {given.field} is at most {most:g}"
+                raise InputError(f"{variable.pointer}/lower", said)
         for column, part in self.parts[len(self.variables) :]:
             if column.lower == 0.0 and isinstance(column, Column):
                 end, to = (lower, np.maximum) if column.factor > 0.0 else (upper, np.minimum)

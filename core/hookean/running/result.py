@@ -92,6 +92,13 @@ class Result:
         """Whether the shape is in equilibrium within the tolerance, or as near as float64 allows."""
         return self.status is Status.CONVERGED
 
+    def take_shape(self, system: System, state: State) -> None:
+        """Take the positions and orientations of a state, which stays as it is; the rest remains."""
+        folded = state.copy()
+        system.slots.fold(folded)
+        self.particles = folded.x[: system.slots.count].copy()
+        self.rotations["quaternions"] = system.slots.quaternions(folded.x)
+
     def force(self, name: str) -> dict[str, Any]:
         """The columns of the first force of this name or kind; KeyError, with what there is, if there is none."""
         for columns in self.forces:

@@ -70,9 +70,19 @@ def measured(quantity: Quantity, found: Equilibrium, pointer: str) -> Floats:
     return values
 
 
+def largest_force(found: Equilibrium) -> float:
+    """The largest force [force] that an element puts on a particle, which forces are sums of."""
+    system, memories = found.system, found.state.memory
+    own = [
+        system.element_forces(group, found.state, memory)[:, : group.particles.shape[1]]
+        for group, memory in zip(system.groups, memories, strict=True)
+    ]
+    return max((float(np.linalg.norm(each, axis=2).max(initial=0.0)) for each in own), default=0.0)
+
+
 def particle_places(found: Equilibrium, particles: Ints, pointer: str) -> Ints:
     """The coordinates (k, 3) of particles among all; InputError where one does not exist."""
-    n = len(found.x)
+    n = found.system.slots.count
     if len(particles) and particles.max() >= n:
         given = int(particles.max())
         raise InputError(f"{pointer}/particles", f"particle {given} does not exist; there are {n}, counted from 0")
