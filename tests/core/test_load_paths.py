@@ -92,3 +92,22 @@ def test_a_star_dome_has_the_limit_load_of_its_symmetric_motion() -> None:
     found = hookean.load_path(Scene.read(star_dome()), steps=25, increment=0.01)
     limits = [point.factor for point in found.critical_points if point.kind == "limit"]
     np.testing.assert_allclose(limits[0], abs(best.fun), rtol=1e-6)
+
+
+@pytest.mark.parametrize("force", [0.01, 5.0])
+def test_a_load_far_smaller_than_the_stiffness_is_followed_beside_a_prestressed_stay(force: float) -> None:
+    """Rounding of coordinates leaves u EA/l |x| = 1e-16 x 8.4e6 x 4 = 4e-9 at a particle, 4e-8 of the load of 0.1 in
+    the first step. A straight column shortens in proportion, and so do equal steps divide its path."""
+    n, tall = 16, 4.0
+    column = {"kind": "beam", "particles": [[i, i + 1] for i in range(n)], "E": 2.1e8, "G": 8e7, "A": 1e-2}
+    column |= {"Iy": 8e-6, "Iz": 2.4e-5, "J": 8e-6, "normal": [1, 0, 0]}
+    stay = {"kind": "springs", "particles": [[n + 1, n], [n, n + 2]], "axial_stiffness": 500.0, "force": force}
+    load = {"kind": "unary", "name": "load", "particles": [n], "vector": [0, 0, -1.0]}
+    plane = {"particles": list(range(1, n + 1)), "axes": "y", "rotations": "xz"}
+    scene = {
+        "particles": [[0, 0, tall * i / n] for i in range(n + 1)] + [[-3, 0, 0], [3, 0, 0]],
+        "forces": [column, stay, load],
+        "anchors": [{"particles": [0], "rotations": "xyz"}, plane, {"particles": [n + 1, n + 2]}],
+    }
+    found = hookean.load_path(Scene.read(scene), steps=3)
+    np.testing.assert_allclose(found.factors, [0.0, 0.1, 0.2, 0.3], rtol=1e-6)

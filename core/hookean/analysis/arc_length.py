@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from hookean.analysis.at_rest import AtRest
 from hookean.analysis.matrices import Unknowns, against_turns, factor
 from hookean.errors import InputError
+from hookean.system.balance import ROUNDING
 from hookean.system.state import State
 from hookean.system.system import System
 
@@ -109,7 +110,7 @@ class Follower:
             return None
         ahead = float(last.tangent @ last.moved) if last.moved.any() else getattr(self, "way", 1.0)
         turn = np.copysign(reach / size, ahead)
-        moved, load = turn * last.tangent, last.factor + turn
+        moved, load, before = turn * last.tangent, last.factor + turn, np.inf
         for iteration in range(ITERATIONS):
             solved = self._solve(last.x + self.unknowns.spread(moved), load)
             if solved is None:
@@ -119,11 +120,13 @@ class Follower:
             if change is None:
                 return None
             step = left + change * tangent
-            still = np.abs(step).max(initial=0.0) <= SETTLED * self.rest.system.size
-            if self.settled or (still and abs(change) <= BALANCED * abs(load)):
+            far = float(np.abs(step).max(initial=0.0))
+            still = far <= SETTLED * self.rest.system.size
+            rounded = self.rounded and (still or far > 0.5 * before)  # steps that get no shorter are rounding, too
+            if self.settled or rounded or (still and abs(change) <= BALANCED * abs(load)):
                 x = last.x + self.unknowns.spread(moved)
                 return Point(x, load, tangent, negatives, moved, iteration)
-            moved, load = moved + step, load + change
+            moved, load, before = moved + step, load + change, far
         return None
 
     def at_factor(self, before: Point, after: Point, wanted: float) -> Point:
@@ -221,9 +224,10 @@ class Follower:
 
     def _solve(self, x: Floats, load: float) -> tuple[Floats, Floats, int] | None:
         """At a shape: the movement that what is out of balance makes, the tangent movement for a unit of the factor,
-        and the number of negative eigenvalues. `settled`: whether it is in balance."""
+        and the number of negative eigenvalues. `settled`: whether it is in balance; `rounded`: whether what is left
+        is no more than rounding of coordinates leaves, u w |x| with w the stiffness at a particle."""
         self.state.x = self.load_state.x = x
-        inner = self.rest.system.evaluate(self.state)[0]
+        inner, stiffness, _ = self.rest.system.evaluate(self.state)
         outer = self.loads.evaluate(self.load_state)[0]
         matrix = self.unknowns.tangent(self.rest.system, self.state)
         if not self.constant:
@@ -235,6 +239,8 @@ class Follower:
         whole = inner + load * outer
         scale = max(float(np.abs(load * outer).max(initial=0.0)), float(np.abs(whole).max(initial=0.0)))
         self.settled = bool(np.abs(left).max(initial=0.0) <= BALANCED * scale)
+        floor = ROUNDING * stiffness[self.unknowns.dofs // 3] * np.abs(x).max(initial=0.0)
+        self.rounded = bool(np.all(np.abs(left) <= np.maximum(floor, BALANCED * scale)))
         solution = found.solve(left), found.solve(force)
         if not all(np.isfinite(part).all() for part in solution):
             return None

@@ -52,7 +52,8 @@ class Result:
 
     `particles` (n, 3) [length]; `forces` one dict of columns for each force of the scene (springs: length, force,
     strain), `reactions` the particles of anchors and elastic supports, the force (k, 3) [force] that these put on them,
-    and whether an anchor holds them (`exact`); `contacts` the same for floors. Reactions + contacts + loads = 0.
+    and whether an anchor holds them (`exact`); `contacts` the same for floors. Reactions + contacts + loads = 0, but
+    for what loads put along soap films.
     `loads` has for each load of the scene its `name`, `kind` and number (`force`), the `resultant` (k, 3) [force], the
     `centre` (k, 3) [length], through which the resultant of parallel forces goes, and the `moment` (k, 3) about it
     [force length]. `rotations`: which `particles` have one (ends of beams), and the unit `quaternions` (r, 4) w, x, y,

@@ -97,6 +97,10 @@ def relax_state(
     if status is Status.CONVERGED and method.remark:
         message = f"{message} {method.remark}"
     result = gather(system, state, watch.found, watch.rest, status, message, name, moving=method.physical)
+    if status is Status.CONVERGED and system.films is not None:
+        from hookean.running.uncarried import uncarried  # other scenes need not load films
+
+        result.report.warnings[:] = dict.fromkeys([*result.report.warnings, *uncarried(system, state)])
     beams = any(force.kind_name == "beam" for force in system.scene.forces)
     if status is Status.CONVERGED and not method.physical and beams:
         from hookean.running.between import bent_between  # other scenes need not load beams
