@@ -109,9 +109,8 @@ def test_a_box_of_cloth_that_is_alike_in_all_directions_needs_no_warp() -> None:
     def forces(**more: object) -> NDArray[np.float64]:
         meshes = {"box": {"vertices": corners, "faces": sides}}
         held = {"particles": list(range(8)), "targets": moved}
-        return relax(Scene(particles=corners, meshes=meshes, forces=[{**cloth, **more}], anchors=[held])).reactions[
-            "force"
-        ]
+        scene = Scene(particles=corners, meshes=meshes, forces=[{**cloth, **more}], anchors=[held])
+        return np.asarray(relax(scene).reactions["force"], np.float64)
 
     found, along = forces(), forces(warp=[1.0, 0.3, 0.2])
     assert np.abs(found).max() > 1e4
