@@ -12,6 +12,7 @@ import pytest
 from hookean.designing import even_films
 from hookean.designing.search import design
 from hookean.designing.sensitivity import sensitivity
+from hookean.running.run import relax
 
 MESH = 4
 STEP = 1e-3  # of fourth order: 1e-12 of values of size 1, and rounding of shapes by 1e-12 / 1e-3
@@ -125,3 +126,19 @@ def test_films_of_many_particles_are_differentiated_across(monkeypatch: pytest.M
     goal = {"kind": "position", "particles": [13], "axes": "x"}
     said = sensitivity(saddle("plain"), goals=[goal], variables=VARIABLES).warnings
     assert len(said) == 1 and "where in a soap film its vertices lie" in said[0]
+
+
+@pytest.mark.slow
+def test_the_same_film_is_no_other_equilibrium() -> None:
+    """A relaxation finds the film of a design with vertices elsewhere along it: a warning is there only where a goal
+    depends on their places."""
+    scene = saddle("air", pressure=0.4)
+    variables = [{"force": "air", "field": "pressure", "tie": "all"}]
+    for particle, axes, target, warned in ((12, "z", 0.19, False), (6, "z", 0.1, True)):
+        goal = {"kind": "position", "particles": [particle], "axes": axes, "target": target}
+        found = design({"scene": scene, "variables": variables, "goals": [goal]})
+        again = relax(found.scene).particles
+        apart = np.abs(again - found.result.particles).max() / np.linalg.norm(np.ptp(again, axis=0))
+        assert found.status == "converged" and apart > 1e-3
+        assert not any("another equilibrium" in said for said in found.warnings)
+        assert any("same films" in said and "lie: position" in said for said in found.warnings) == warned

@@ -111,8 +111,8 @@ def _step(search: Search, here: Here) -> bool:
 
 
 def _flatter(search: Search, here: Here, y: Floats) -> bool:
-    """Whether the slope that is left is less by half: objectives that differ by rounding do not tell which is nearer to
-    the minimum."""
+    """Whether the slope that is left is less by half: of objectives that differ by rounding the less is not always
+    nearer to the minimum."""
     across = null(here.by[here.rows][:, here.free])
     left = [across.T @ slope[here.free] for slope in (here.slope, _lagrangian(search, here, search.at(y)))]
     return bool(np.linalg.norm(left[1]) <= 0.5 * np.linalg.norm(left[0]))

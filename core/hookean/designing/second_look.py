@@ -46,7 +46,8 @@ UNMOVED = (
 
 
 def not_found_again(search: Search, found: Equilibrium, scene: Scene) -> list[str]:
-    """A warning where the scene of the answer has another equilibrium from its drawn shape."""
+    """A warning where the scene of the answer has another equilibrium from its drawn shape, or the same films and goals
+    that depend on where the vertices of these lie."""
     if not found.converged or not nonlinear(search.system):
         return []
     try:
@@ -55,15 +56,46 @@ def not_found_again(search: Search, found: Equilibrium, scene: Scene) -> list[st
         return [f"the returned scene cannot be relaxed: {error.sentence}"]
     if not again.converged:
         return [f"a relaxation of the returned scene from its drawn shape does not converge: {again.message}"]
-    count = len(again.particles)
-    away = float(lengths(found.x[:count] - again.particles).max(initial=0.0))
-    if away <= APART * search.system.size:
-        return []
-    unit = search.system.scene.units.length
-    return [
-        f"a relaxation of the returned scene from its drawn shape ends up to {away:.3g} {unit} away, at another"
-        " equilibrium; draw the scene nearer to the shape of this result"
-    ]
+    moved, unit = found.x.copy(), search.system.scene.units.length
+    moved[: len(again.particles)] -= again.particles
+    moved[len(again.particles) :] = 0.0
+    across = _across_films(search, found, moved)
+    whole, other = (float(lengths(rows).max(initial=0.0)) for rows in (moved, across))
+    least = APART * search.system.size
+    if other > least:
+        return [
+            f"a relaxation of the returned scene from its drawn shape ends up to {whole:.3g} {unit} away, at another"
+            " equilibrium; draw the scene nearer to the shape of this result"
+        ]
+    if whole > least and (names := _changed(search, found, across - moved)):
+        return [
+            f"a relaxation of the returned scene from its drawn shape ends at the same films, with vertices up to"
+            f" {whole:.3g} {unit} away along them; it changes what depends on where they lie: {', '.join(names)}"
+        ]
+    return []
+
+
+def _across_films(search: Search, found: Equilibrium, moved: Floats) -> Floats:
+    """What motions (n, 3) to a shape have across its films, whose vertices may lie anywhere in them. Directions are
+    those of the shape halfway: the chord of a bow is along it there."""
+    films, across = search.system.films, moved.copy()
+    if films is not None:
+        films.across(found.x - 0.5 * moved, found.state.free, across)
+    return across
+
+
+def _changed(search: Search, found: Equilibrium, moved: Floats) -> list[str]:
+    """Goals and constraints that change with motions (n, 3) by more than shapes may differ."""
+    problem, names = search.problem, []
+    entries = [(f"goals/{i}", goal) for i, goal in enumerate(problem.goals)]
+    entries += [(f"constraints/{i}", limited) for i, limited in enumerate(problem.constraints)]
+    for pointer, entry in entries:
+        own = entry.quantity.values(found, f"/{pointer}")
+        size = max(float(np.abs(own).max(initial=0.0)), search.sized(entry.quantity, found, f"/{pointer}"))
+        change = entry.quantity.slopes(found, search.unknowns, f"/{pointer}")[0] @ moved.ravel()
+        if np.abs(change).max(initial=0.0) > APART * (size or 1.0):
+            names.append(entry.name or entry.quantity.kind_name)
+    return names
 
 
 def stationary(search: Search) -> bool:
