@@ -49,3 +49,24 @@ def test_a_shape_in_which_a_beam_is_turned_against_itself_is_no_equilibrium() ->
     assert simulation.balance.residual == 0.0
     assert simulation.look() is not hookean.Status.CONVERGED
     assert "between particles 0 and 1 has turned" in amiss(simulation.system, simulation.state)
+
+
+def hinged(**given: Any) -> hookean.Result:
+    """Two beams that meet at a node, which has a moment about y."""
+    beam = {"kind": "beam", "E": 1e6, "G": 4e5, "A": 0.01, "Iy": 1e-5, "Iz": 1e-5, "J": 1e-5}
+    first = beam | {"particles": [[0, 1]], "release_end": "yz"}
+    load = {"kind": "unary", "particles": [1], "vector": [0, 0, 0], "moment": [0, 0.01, 0]}
+    anchor = {"particles": [0, 2], "rotations": "xyz"}
+    forces = [first, beam | {"particles": [[1, 2]], "release_start": "yz"} | given, load]
+    points = [[0, 0, 0], [1, 0, 0], [2, 0, 0]]
+    return hookean.relax(Scene.read({"particles": points, "forces": forces, "anchors": [anchor]}))
+
+
+def test_a_moment_where_all_beams_are_hinged_is_named_at_once() -> None:
+    result = hinged()
+    assert result.status is hookean.Status.STALLED and result.iterations == 0
+    assert "Nothing takes the moment (0, 0.01, 0) N m on particle 1" in result.message
+
+
+def test_a_moment_that_one_beam_takes_is_in_balance() -> None:
+    assert hinged(release_start="").converged

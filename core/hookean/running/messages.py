@@ -14,6 +14,7 @@ from hookean.stability.equilibrium import Equilibrium, Stability, amiss
 from hookean.system.balance import Balance, Floats
 from hookean.system.state import State
 from hookean.system.system import System
+from hookean.system.untaken import untaken_moment
 
 if TYPE_CHECKING:
     from hookean.running.watch import Watch
@@ -102,6 +103,8 @@ def _obstacle(watch: Watch, system: System) -> str:
         )
     if watch.method.name == "newton" and system.contacts:
         return "Newton steps end where a particle comes to a floor: use auto, which goes on from there"
+    if said := untaken_moment(system, watch.good):
+        return said
     if any(np.any(force.moment) for force in system.scene.forces if isinstance(force, Unary)):
         return (
             "A moment keeps its direction and has no energy, so a shape that it bends far may not come to rest. "
