@@ -80,3 +80,16 @@ def test_a_model_without_supports_meets_any_limit_of_reactions() -> None:
     free = {"particles": [[0, 0, 0], [1, 0, 0]], "forces": [{"kind": "springs", "particles": [[0, 1]], "force": 2}]}
     assert said("max_reaction = 0\nmax_force = 1e9", free) == []
     assert np.isfinite(limits.read_limits("max_reaction = 0")["max_reaction"])
+
+
+def test_a_displacement_is_at_the_particle_that_moved_most() -> None:
+    hanging = {
+        "particles": [[0, 0, 0], [0, 0, -1], [0, 0, -2]],
+        "forces": [
+            {"kind": "springs", "name": "rope", "particles": [[0, 1], [1, 2]], "stiffness": 10},
+            {"kind": "unary", "particles": [2], "vector": [0, 0, -1]},
+        ],
+        "anchors": [{"particles": [0]}],
+    }
+    (sentence,) = said("max_displacement = 0.1", hanging)
+    assert "at particle 2 of rope exceeds" in sentence

@@ -142,7 +142,7 @@ def freeze(scene: Scene) -> Frozen:
                     temperatures[part.number] = np.asarray(own, dtype=np.float64)
             elif group.cls.kind_name in HEATED and (known := _own_expansion(part.force, system.places)) is not None:
                 expansions[part.number] = known
-            elif group.cls.role == "internal" and part.number not in slides and group.cls.kind_name not in ELASTIC:
+            elif group.cls.role == "internal" and group.cls is not SlidingCable and group.cls.kind_name not in ELASTIC:
                 name = force.name or force.kind_name
                 notes.append(f"/forces/{part.number}: {name} is not elastic and acts on the frozen model as before")
     notes += _heavy(system, state)

@@ -184,7 +184,7 @@ def _check(
                 continue
             at = int(np.flatnonzero(mask)[np.argmax(values[mask])])
             if float(values[at]) > worst:
-                worst, place = float(values[at]), _spot(part, at)
+                worst, place = float(values[at]), _spot(part, at, moved if limit == "max_displacement" else None)
         if limit in NEEDED and not place and not (whole and limit == "max_reaction"):
             raise InputError(f"{where} {limit}", NEEDED[limit])
         sign = -1.0 if limit == "min_force" else 1.0
@@ -232,8 +232,12 @@ def _values(part: Section, limit: str, moved: Floats, whole: bool) -> Floats | N
     return part.columns["force"] if limit == "max_force" else -part.columns["force"]
 
 
-def _spot(part: Section, row: int) -> str:
+def _spot(part: Section, row: int, moved: Floats | None = None) -> str:
+    """An element in words, and which of its particles has `moved` (n,) most, where that counts."""
     item = part.item(row)
     called = f" of {item.label}" if item is not None else ""
+    if moved is not None:
+        most = part.particles[row][np.argmax(moved[part.particles[row]])]
+        return f"particle {most}{called or f' of {part.name}'}"
     thing = f"particle {part.particles[row, 0]}" if part.kind in CARRIED else f"element {row} of {part.name}"
     return thing + called

@@ -258,6 +258,21 @@ class Beam(Force):
         }  # fmt: skip
 
     @classmethod
+    def amiss(cls, block: Block, x: Floats) -> str:
+        """A frame that has turned against the chord, or a chord of zero length: the beam has no forces there."""
+        found = np.zeros((len(block.indices), 8))
+        dispatch.compiled(beam_stresses)(x, block.indices, block.parameters, found)
+        lost = np.flatnonzero((found[:, 0] == 0.0) & (block.indices[:, 0] != block.indices[:, 1]))
+        if not len(lost):
+            return ""
+        a, b = block.indices[lost[0], :2]
+        more = f" (and {len(lost) - 1} more)" if len(lost) > 1 else ""
+        return (
+            f"the beam between particles {a} and {b}{more} has turned by 180 degrees against the line between its "
+            "ends, where its forces are not defined. Draw the beams nearer to the shape they take, or lower the loads"
+        )
+
+    @classmethod
     def example(cls) -> tuple[Beam, Floats]:
         """Two beams that meet at an angle, and differ."""
         x = np.array([[0.2, 0.1, 0.3], [1.3, 0.4, 0.2], [1.9, 1.3, 0.8]])

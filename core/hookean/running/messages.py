@@ -14,6 +14,7 @@ from hookean.stability.equilibrium import Equilibrium, Stability, amiss
 from hookean.system.balance import Balance, Floats
 from hookean.system.state import State
 from hookean.system.system import System
+from hookean.system.untaken import untaken_moment
 
 if TYPE_CHECKING:
     from hookean.running.watch import Watch
@@ -102,6 +103,8 @@ def _obstacle(watch: Watch, system: System) -> str:
         )
     if watch.method.name == "newton" and system.contacts:
         return "Newton steps end where a particle comes to a floor: use auto, which goes on from there"
+    if said := untaken_moment(system, watch.good):
+        return said
     if any(np.any(force.moment) for force in system.scene.forces if isinstance(force, Unary)):
         return (
             "A moment keeps its direction and has no energy, so a shape that it bends far may not come to rest. "
@@ -128,9 +131,22 @@ def _caveat(system: System, rest: Equilibrium | None) -> str:
 
 
 def _overloaded(system: System, state: State, size: float) -> str:
-    """Which load is too large for what holds it: one that would move its particle by many times the model's size."""
+    """Which load is too large for what holds it: one that would move its particle by many times the model's size, or
+    that nothing holds at all; and which beam has lost its forces."""
+    turned = (group.cls.amiss(group.block, state.x) for group in system.groups if group.cls.turns)
+    if said := next((said for said in turned if said), ""):
+        return said[0].upper() + said[1:]
     loads = np.sqrt((system.evaluate(state, only="load")[0] ** 2 * state.free).sum(axis=1))
-    reach = loads / np.maximum(system.evaluate(state)[1], 1e-300)
+    stiffness = system.evaluate(state)[1]
+    loose = (stiffness == 0.0) & (loads > 0.0)
+    loose[system.slots.count :] = False
+    if loose.any():
+        particle, units = int(np.argmax(loose)), system.scene.units
+        return (
+            f"In this shape nothing resists the load of {loads[particle]:.3g} {units.force} on particle {particle}"
+            f"{owner(system, particle, role='load')}: connect it, or anchor it"
+        )
+    reach = loads / np.where(stiffness > 0.0, stiffness, np.inf)
     particle = int(np.argmax(reach[: system.slots.count]))
     if reach[particle] <= BEYOND * size:
         return ""

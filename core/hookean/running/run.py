@@ -19,6 +19,7 @@ from hookean.stability.exact_reactions import exact_reactions
 from hookean.system.impulses import ignored
 from hookean.system.state import State
 from hookean.system.system import System, compile
+from hookean.system.untaken import untaken_moment
 
 Progress = Callable[[int, float], None]
 """Called with the iteration and the residual now and then while a relaxation runs."""
@@ -63,6 +64,8 @@ def relax_state(
     watch = Watch(system, state, method)
     watch.started = began
     status = watch.look(system, state, known=True)
+    if status is Status.RUNNING and not method.physical and untaken_moment(system, state):
+        status = Status.STALLED  # it turns without end
     while True:
         if status is Status.CONVERGED:
             if near and not method.physical:

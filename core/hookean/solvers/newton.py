@@ -179,11 +179,16 @@ def _search(system: System, state: State, step: Floats, before: Judged, *, stric
             now.fallen = max(now.fallen, 0.5 * length * (slope + float((now.left * step).sum())))
         falls = now.fallen >= 1e-4 * length * slope - before.noise
         halves = now.largest < 0.5 * before.largest and not (strict and potential)
-        if np.isfinite(now.energy) and (falls or halves):
+        if np.isfinite(now.energy) and (falls or halves) and not _lost(system, state):
             return length, now
         length *= 0.5
     state.x = start
     return 0.0, before
+
+
+def _lost(system: System, state: State) -> bool:
+    """Whether an element has turned to where it has neither forces nor energy, which is no way to lower it."""
+    return any(group.cls.amiss(group.block, state.x) for group in system.groups if group.cls.turns)
 
 
 def _movable(system: System, state: State) -> Floats:

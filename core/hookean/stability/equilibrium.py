@@ -138,7 +138,7 @@ def _certain(system: System, state: State, free: Floats, method: Solver | None) 
 
 def amiss(system: System, state: State) -> str:
     """Why a shape cannot rest although its forces balance, as a sentence without its full stop: films that are folded
-    over, bodies that lie in each other, particles below floors. Empty where it can."""
+    over, bodies that lie in each other, particles below floors, beams turned against themselves. Empty where it can."""
     if system.films is not None and len(folded := system.films.folded(state.x, state.free)):
         more = f" (and at {len(folded) - 1} more)" if len(folded) > 1 else ""
         return (
@@ -149,7 +149,7 @@ def amiss(system: System, state: State) -> str:
     if particle >= 0:
         unit = system.scene.units.length
         return f"particle {particle} lies {depth:.3g} {unit} below a floor. Use auto, which lays particles on floors"
-    found = (group.cls.amiss(group.block, state.x) for group in system.groups if group.cls.rewired)
+    found = (group.cls.amiss(group.block, state.x) for group in system.groups if group.cls.rewired or group.cls.turns)
     return next((reason for reason in found if reason), "")
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -10,8 +11,13 @@ from numpy.typing import NDArray
 
 from hookean.analysis.freezing import Frozen, freeze
 from hookean.errors import InputError
+from hookean.forces import Block, groups
+from hookean.forces.base import lengths
+from hookean.forces.sliding_cable import REST, K, SlidingCable
 from hookean.forces.springs import Springs
 from hookean.scene.scene import Scene
+from hookean.system.state import State
+from hookean.system.system import System
 from hookean.values.units import Units
 
 Floats = NDArray[np.float64]
@@ -81,7 +87,7 @@ def cables(model: Scene | Frozen, *, stretch: float = 0.0, fitting: float = 0.0)
 
     Elements of one force that continue each other, straight on where several meet, are a cable; at a support where they
     turn by 45 degrees or more it ends. Its unstressed length is the sum of l EA / (EA + T); cut it to unstressed
-    length / (1 + stretch) - 2 fitting.
+    length / (1 + stretch) - 2 fitting. A sliding cable goes on over its saddles; its unstressed length is its own.
 
     - `model`: A scene whose form is found and frozen (see `freeze`), or a frozen one.
     - `stretch`: The construction stretch of new rope, which stays after its first loading [-].
@@ -94,25 +100,52 @@ def cables(model: Scene | Frozen, *, stretch: float = 0.0, fitting: float = 0.0)
             raise InputError(place, f"{value!r} given; a number of at least 0 is expected")
     frozen = model if isinstance(model, Frozen) else freeze(model)
     system, state = frozen.system()
-    held = np.flatnonzero((state.free == 0.0).all(axis=1))
     found: list[Cable] = []
-    for group in system.groups:
-        if group.cls is not Springs:
-            continue
-        for part in group.parts:
-            pairs, rest = group.block.indices[part.rows], np.asarray(part.force.rest_length)  # type: ignore[attr-defined]
-            rest = np.broadcast_to(rest, (len(pairs),))
-            name = part.force.name or part.force.kind_name
-            for rows, particles in chains(state.x, pairs, held):
-                length, tension = frozen.lengths[part.number][rows], frozen.tensions[part.number][rows]
-                cut = float(rest[rows].sum()) / (1.0 + stretch) - 2.0 * fitting
-                called = f"{name} {1 + sum(cable.force == name for cable in found)}"
-                if cut <= 0.0:
-                    raise InputError("fitting", f"{called} is shorter than its fittings; lower the value")
-                found.append(Cable(called, name, particles, tension, length, rest[rows], cut))
+    for force, particles, length, tension, rest in _lines(frozen, system, state):
+        called = f"{force} {1 + sum(cable.force == force for cable in found)}"
+        cut = float(rest.sum()) / (1.0 + stretch) - 2.0 * fitting
+        if cut <= 0.0:
+            raise InputError("fitting", f"{called} is shorter than its fittings; lower the value")
+        found.append(Cable(called, force, particles, tension, length, rest, cut))
     if not found:
-        raise InputError("model", "has no cables; add springs or lines of constant tension")
+        raise InputError("model", "has no cables; add springs, sliding cables or lines of constant tension")
     return Cables(tuple(found), frozen.scene.units)
+
+
+def _lines(frozen: Frozen, system: System, state: State) -> Iterator[tuple[str, Ints, Floats, Floats, Floats]]:
+    """Of each cable the name of its force, the particles along it, and of its elements the length, tension and
+    unstressed length."""
+    held = np.flatnonzero((state.free == 0.0).all(axis=1))
+    for group in system.groups:
+        for part in group.parts:
+            name, number, pairs = part.force.name or part.force.kind_name, part.number, group.block.indices[part.rows]
+            if group.cls is Springs:
+                rest = np.broadcast_to(np.asarray(part.force.rest_length), (len(pairs),))  # type: ignore[attr-defined]
+                for rows, particles in chains(state.x, pairs, held):
+                    length, tension = frozen.lengths[number][rows], frozen.tensions[number][rows]
+                    yield name, particles, length, tension, rest[rows]
+            elif isinstance(part.force, SlidingCable):
+                known = None if frozen.form is None else frozen.form.forces[number]["force"]
+                for particles, *values in _sliding(group.of(part), state.x, known):
+                    yield name, particles, *values
+
+
+def _sliding(block: Block, x: Floats, known: Floats | None) -> Iterator[tuple[Ints, Floats, Floats, Floats]]:
+    """Of each sliding cable of a force the particles along it, and of its lines the length, the tension, and their
+    parts of L0: l EA / (EA + T), as much as makes their sum L0 where it is slack. With friction the tensions are those
+    `known` (m,) of the form."""
+    pairs, heads = block.indices, groups.heads(block)
+    length = lengths(x[pairs[:, 1]] - x[pairs[:, 0]])
+    whole, rest = block.parameters[:, REST], np.bincount(heads, length, len(pairs))[heads]
+    axial = block.parameters[:, K] * whole
+    tension = np.maximum(axial * (rest / whole - 1.0), 0.0) if known is None else np.asarray(known)
+    parts = length * axial / np.maximum(axial + tension, 1e-300)
+    parts *= whole / np.bincount(heads, parts, len(pairs))[heads]
+    for head in np.unique(heads):
+        own = np.flatnonzero(heads == head)
+        for rows, particles in chains(x, pairs[own]):
+            rows = own[rows]
+            yield particles, length[rows], tension[rows], parts[rows]
 
 
 def chains(x: Floats, pairs: Ints, held: Ints | None = None) -> list[tuple[Ints, Ints]]:

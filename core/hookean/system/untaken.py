@@ -1,0 +1,54 @@
+"""Moments on particles all of whose beams are hinged about their axis: nothing takes them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hookean.forces.base import lengths
+
+if TYPE_CHECKING:
+    from hookean.system.state import State
+    from hookean.system.system import System
+
+NOTHING = 1e-9  # part of the largest stiffness against turns that counts as none
+PART = 1e-6  # of a moment along such an axis
+
+
+def untaken_moment(system: System, state: State) -> str:
+    """Which particle has a moment [force length] about an axis n about which no element resists its turning, as a
+    sentence without its full stop: n of the part K of the tangent of its own turns, K n = 0. Such turns move nothing,
+    so they have no end. Empty where there is none."""
+    own, first = system.slots, system.slots.first
+    if not len(own):
+        return ""
+    loads = (system.evaluate(state, only="load")[0] * state.free)[first] * own.lengths[:, None]
+    size = lengths(loads)
+    if not size.any():
+        return ""
+    stiffness = np.zeros((len(own), 3, 3))
+    for group, memory in zip(system.groups, state.memory, strict=True):
+        if group.cls.role == "load" or not group.cls.turns:
+            continue
+        blocks = system.stiffness_blocks(group, state, memory)
+        for place, rows in enumerate(group.block.indices.T):
+            mine = (rows >= first.start) & (rows < first.stop)
+            along = slice(3 * place, 3 * place + 3)
+            np.add.at(stiffness, rows[mine] - first.start, blocks[mine, along, along])
+    free = state.free[first]
+    stiffness *= free[:, :, None] * free[:, None, :]
+    values, axes = np.linalg.eigh(stiffness)
+    loose = np.abs(values) <= NOTHING * float(np.abs(values).max())
+    parts = np.einsum("rij,ri->rj", axes, loads) * loose
+    left = np.einsum("rij,rj->ri", axes, parts)
+    lost = np.flatnonzero(lengths(left) > PART * size.max())
+    if not len(lost):
+        return ""
+    moment, unit = left[lost[0]], system.scene.units.of("moment")
+    said = ", ".join(f"{c:.3g}" for c in np.where(np.abs(moment) > PART * size.max(), moment, 0.0))
+    more = f" (and {len(lost) - 1} more)" if len(lost) > 1 else ""
+    return (
+        f"Nothing takes the moment ({said}) {unit} on particle {own.particles[lost[0]]}{more}: all beams there are "
+        "hinged about its axis. Release fewer axes of one of them, hold the rotation by an anchor, or remove the moment"
+    )

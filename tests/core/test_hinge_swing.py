@@ -1,0 +1,72 @@
+"""Hinged beams that loads pull far back: they swing past shapes in which a beam has no forces."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+import hookean
+from hookean import Scene
+from hookean.stability.equilibrium import amiss
+
+
+def chain(particles: list[list[float]], load: list[float], solver: str) -> hookean.Result:
+    """Beams in a row from a clamp, hinged about z at their ends, under a load at the last one's."""
+    count = len(particles) - 1
+    row: dict[str, Any] = {"kind": "beam", "particles": [[i, i + 1] for i in range(count)], "E": 1000.0, "G": 400.0}
+    row |= {"A": 0.5, "Iy": 0.05, "Iz": 0.03, "J": 0.04, "release_end": "z", "normal": [0, 0, 1]}
+    scene = {
+        "particles": particles,
+        "forces": [row, {"kind": "unary", "particles": [count], "vector": load}],
+        "anchors": [{"particles": [0], "rotations": "xyz"}],
+        "settings": {"solver": solver},
+    }
+    return hookean.relax(Scene.read(scene))
+
+
+def test_two_hinged_beams_pulled_back_by_145_degrees_come_to_the_shape_that_damped_motion_finds() -> None:
+    # both residuals are below 1e-6 of the load; the softest direction has about the stiffness P / l of a pendulum
+    found = [chain([[0, 0, 0], [1, 0.1, 0.2], [2, -0.1, 0.3]], [-1.0, 0.5, 1.0], way) for way in ("auto", "verlet")]
+    assert all(result.converged and str(result.stability) == "stable" for result in found)
+    np.testing.assert_allclose(found[0].particles, found[1].particles, atol=1e-5)
+
+
+def test_a_beam_that_has_turned_against_itself_is_named_and_no_number_beyond_reason() -> None:
+    # pulled back along its line, the chain passes the shape in which its last beam lies on the one before
+    result = chain([[0, 0, 0], [1, 0, 0], [2, 0, 0], [3, 0, 0]], [-1.0, 0.001, 0.0], "auto")
+    assert "between particles 2 and 3 has turned by 180 degrees" in result.message
+    assert "e+" not in result.message
+
+
+def test_a_shape_in_which_a_beam_is_turned_against_itself_is_no_equilibrium() -> None:
+    """No force acts there, so forces balance."""
+    row = {"kind": "beam", "particles": [[0, 1]], "E": 1000.0, "G": 400.0, "A": 0.5, "Iy": 0.05, "Iz": 0.03, "J": 0.04}
+    anchor = {"particles": [0], "rotations": "xyz"}
+    scene = Scene.read({"particles": [[0, 0, 0], [1, 0, 0]], "forces": [row], "anchors": [anchor]})
+    simulation = hookean.Simulation(scene)
+    simulation.state.x[1] = [-1.0, 0.0, 0.0]  # its frame still points along x
+    assert simulation.balance.residual == 0.0
+    assert simulation.look() is not hookean.Status.CONVERGED
+    assert "between particles 0 and 1 has turned" in amiss(simulation.system, simulation.state)
+
+
+def hinged(**given: Any) -> hookean.Result:
+    """Two beams that meet at a node, which has a moment about y."""
+    beam = {"kind": "beam", "E": 1e6, "G": 4e5, "A": 0.01, "Iy": 1e-5, "Iz": 1e-5, "J": 1e-5}
+    first = beam | {"particles": [[0, 1]], "release_end": "yz"}
+    load = {"kind": "unary", "particles": [1], "vector": [0, 0, 0], "moment": [0, 0.01, 0]}
+    anchor = {"particles": [0, 2], "rotations": "xyz"}
+    forces = [first, beam | {"particles": [[1, 2]], "release_start": "yz"} | given, load]
+    points = [[0, 0, 0], [1, 0, 0], [2, 0, 0]]
+    return hookean.relax(Scene.read({"particles": points, "forces": forces, "anchors": [anchor]}))
+
+
+def test_a_moment_where_all_beams_are_hinged_is_named_at_once() -> None:
+    result = hinged()
+    assert result.status is hookean.Status.STALLED and result.iterations == 0
+    assert "Nothing takes the moment (0, 0.01, 0) N m on particle 1" in result.message
+
+
+def test_a_moment_that_one_beam_takes_is_in_balance() -> None:
+    assert hinged(release_start="").converged
