@@ -52,8 +52,8 @@ class Result:
 
     `particles` (n, 3) [length]; `forces` one dict of columns for each force of the scene (springs: length, force,
     strain), `reactions` the particles of anchors and elastic supports, the force (k, 3) [force] that these put on them,
-    and whether an anchor holds them (`exact`); `contacts` the same for floors. Reactions + contacts + loads = 0, but
-    for what loads put along soap films.
+    and whether an anchor holds them (`exact`); `contacts` the same for floors. Reactions + contacts + loads = 0,
+    except for loads along soap films.
     `loads` has for each load of the scene its `name`, `kind` and number (`force`), the `resultant` (k, 3) [force], the
     `centre` (k, 3) [length], through which the resultant of parallel forces goes, and the `moment` (k, 3) about it
     [force length]. `rotations`: which `particles` have one (ends of beams), and the unit `quaternions` (r, 4) w, x, y,
@@ -94,7 +94,7 @@ class Result:
         return self.status is Status.CONVERGED
 
     def take_shape(self, system: System, state: State) -> None:
-        """Take the positions and orientations of a state, which stays as it is; the rest remains."""
+        """Take the positions and orientations of a state, which stays as it is."""
         folded = state.copy()
         system.slots.fold(folded)
         self.particles = folded.x[: system.slots.count].copy()
