@@ -126,8 +126,8 @@ def _lines(frozen: Frozen, system: System, state: State) -> Iterator[tuple[str, 
                     yield name, particles, length, tension, rest[rows]
             elif isinstance(part.force, SlidingCable):
                 known = None if frozen.form is None else frozen.form.forces[number]["force"]
-                for particles, *values in _sliding(group.of(part), state.x, known):
-                    yield name, particles, *values
+                for particles, length, tension, rest in _sliding(group.of(part), state.x, known):
+                    yield name, particles, length, tension, rest
 
 
 def _sliding(block: Block, x: Floats, known: Floats | None) -> Iterator[tuple[Ints, Floats, Floats, Floats]]:
