@@ -51,6 +51,14 @@ def test_what_has_no_answer_is_reported(twist: str, status: str) -> None:
     assert checked(1, twist).status == status
 
 
+@pytest.mark.soak
+@pytest.mark.parametrize(("seed", "twist"), [(619, "scaled"), (362, "plain"), (8153, "contradictory")])
+def test_answers_in_narrow_valleys_and_far_from_the_start_are_true(seed: int, twist: str) -> None:
+    """Where slopes of goals nearly cancel on a long way down, where a stiffness grows to thousands of its size, and
+    where what is left of a goal is rounding."""
+    checked(seed, twist)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", [41, 59])
 def test_the_last_digits_are_found(seed: int) -> None:
