@@ -94,7 +94,8 @@ def _both(search: Search) -> NDArray[np.bool_]:
 
 def at_minimum(search: Search) -> bool:
     """Whether the best so far is a minimum of first order: nothing but bounds and constraints has a slope left, or all
-    goals are met."""
+    goals are met. Slopes are those by unknowns in parts of their sizes: far from where a search began they are slight
+    by the scale of the start, even on a long way down."""
     if search.best[0] <= 0.0 and search.best[1] <= search.met:
         return True
     y = search.best[2]
@@ -106,7 +107,8 @@ def at_minimum(search: Search) -> bool:
     steepest = float(np.abs(_goal_slopes(search, found)).max(initial=0.0))
     least = SMALL * max(search.first_value, abs(search.best[1]))
     slight = np.sqrt(search.problem.settings.tolerance) * max(least, steepest)
-    return bool(np.abs(whole).max(initial=0.0) <= slight and (bounds * search.scale >= -slight).all())
+    whole = np.abs(whole) * np.maximum(1.0, np.abs(y))
+    return bool(whole.max(initial=0.0) <= slight and (bounds * search.scale >= -slight).all())
 
 
 def _goal_slopes(search: Search, found: Equilibrium) -> Floats:

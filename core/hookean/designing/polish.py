@@ -37,6 +37,7 @@ SHORT = (1e-3, 1e-4, 1e-5, 1e-6)  # of an unknown's size, of steps straight down
 SHORTER = (1.0, 0.9, 0.5)  # parts of a step to a limit, which may be nearer than by its slope
 BACK = 3  # ways back to limits after a step
 NOISE = 1e-10  # part of the objective by which it may differ at one shape, found on two ways
+MUCH = 1e-7  # part of the objective: a last step that gains more is not near the minimum
 GAIN = 1e-12  # part of the objective: a step that gains less is the last
 
 
@@ -55,14 +56,22 @@ class Here:
     by: Floats  # derivatives (k, u) of all values of constraints
 
 
-def polish(search: Search) -> None:
-    """Bring the best so far nearer to the minimum that it is at, if its slope is not that of one yet."""
-    taken = 0
+def polish(search: Search) -> bool:
+    """Bring the best so far nearer to the minimum that it is at, if its slope is not that of one yet. Whether the last
+    of the steps that are taken at once still gained much: in a narrow valley slopes of goals may nearly cancel, far
+    from the minimum."""
+    taken, gain = 0, 0.0
     for number in range(STEPS):
-        here = _here(search)
-        taken += 0 if here is None else 2 * int(here.free.sum())
-        if here is None or (number >= 3 and taken > EQUILIBRIA) or not _step(search, here):
-            return
+        here, before = _here(search), search.best[1]
+        if here is None:
+            return False
+        taken += 2 * int(here.free.sum())
+        if number >= 3 and taken > EQUILIBRIA:
+            break
+        if not _step(search, here):
+            return False
+        gain = before - search.best[1]
+    return gain > MUCH * abs(search.best[1])
 
 
 def _here(search: Search) -> Here | None:

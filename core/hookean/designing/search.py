@@ -23,7 +23,7 @@ from hookean.designing.limits import FAR, LIMIT, beyond, size
 from hookean.designing.linearised import Linearised
 from hookean.designing.located import system_of
 from hookean.designing.methods import METHODS, Stopped, Unbounded
-from hookean.designing.polish import polish
+from hookean.designing.polish import STEPS, polish
 from hookean.designing.problem import Problem
 from hookean.designing.quantities.base import Quantity, largest_force
 from hookean.designing.second_look import SADDLE, SYMMETRIC, UNMOVED, saddle, stationary, unmoved
@@ -291,13 +291,16 @@ class Ended(NamedTuple):
 def _ended(search: Search) -> Ended:
     """The search by the method of its problem."""
     method = chosen(search)
-    status, elsewhere, still = DesignStatus.STALLED, None, ""
+    elsewhere: Floats | None = None
+    status, still = DesignStatus.STALLED, ""
     iterations, said = 0, f"The start has no equilibrium. {search.first.result.message}"
     if search.first.converged:
         try:
             iterations, status, said = METHODS[method](search)
             if method in ("l-bfgs-b", "slsqp", "augmented_lagrangian"):
                 search.check_end()
+            if status in (DesignStatus.CONVERGED, DesignStatus.STALLED):
+                iterations, status, said = _polished(search, iterations, status, said)
             status, said = _looked_again(search, status, said)
             if status in (DesignStatus.CONVERGED, DesignStatus.INFEASIBLE) and not said:
                 elsewhere, still = other_start(search)
@@ -310,10 +313,17 @@ def _ended(search: Search) -> Ended:
     return Ended(search.used or method, iterations or search.evaluations, status, said, elsewhere, still)
 
 
+def _polished(search: Search, iterations: int, ended: DesignStatus, said: str) -> tuple[int, DesignStatus, str]:
+    """The last digits: sought until steps gain little, or all iterations are used."""
+    while polish(search):
+        iterations += STEPS
+        if iterations >= search.problem.settings.max_iterations:
+            return iterations, DesignStatus.MAX_ITERATIONS, ""
+    return iterations, ended, said
+
+
 def _looked_again(search: Search, ended: DesignStatus, said: str) -> tuple[DesignStatus, str]:
-    """The last digits, and whether the end is what it seems."""
-    if ended in (DesignStatus.CONVERGED, DesignStatus.STALLED):
-        polish(search)
+    """Whether the end is what it seems."""
     if ended is DesignStatus.STALLED and at_minimum(search):
         ended, said = DesignStatus.CONVERGED, ""
     if ended is DesignStatus.CONVERGED and stationary(search):
