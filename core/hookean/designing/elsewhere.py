@@ -32,7 +32,8 @@ AGAIN = "no variable changes {} at the values of the scene; the search began aga
 def missing(search: Search, found: Equilibrium) -> list[tuple[str, Quantity, str, Floats]]:
     """Goals and constraints that are not met: what they are called, their quantity, pointer and what each value (k,)
     misses."""
-    problem, aims, whole = search.problem, search.aims, []
+    problem, aims = search.problem, search.aims
+    whole: list[tuple[str, Quantity, str, Floats, float]] = []
     values = aims.values(found)
     names = once(goal.name or goal.quantity.kind_name for goal in problem.goals)
     for i, (goal, own, missed) in enumerate(zip(problem.goals, values, aims.missed(values), strict=True)):
@@ -76,7 +77,8 @@ def other_start(search: Search) -> tuple[Floats | None, str]:
     the bounds those that miss least, nearest to the start of them; and what that is called."""
     from scipy.stats import qmc
 
-    best, kept = None, (np.inf, np.inf, np.inf)
+    best: Floats | None = None
+    kept = (np.inf, np.inf, np.inf)
     flat = unchanged(search, search.at_best())
     if not flat:
         return None, ""

@@ -291,7 +291,8 @@ class Ended(NamedTuple):
 def _ended(search: Search) -> Ended:
     """The search by the method of its problem."""
     method = chosen(search)
-    status, elsewhere, still = DesignStatus.STALLED, None, ""
+    elsewhere: Floats | None = None
+    status, still = DesignStatus.STALLED, ""
     iterations, said = 0, f"The start has no equilibrium. {search.first.result.message}"
     if search.first.converged:
         try:

@@ -86,8 +86,9 @@ def _across_films(search: Search, found: Equilibrium, moved: Floats) -> Floats:
 
 def _changed(search: Search, found: Equilibrium, moved: Floats) -> list[str]:
     """Goals and constraints that change with motions (n, 3) by more than shapes may differ."""
-    problem, names = search.problem, []
-    entries = [(f"goals/{i}", goal) for i, goal in enumerate(problem.goals)]
+    problem = search.problem
+    names: list[str] = []
+    entries: list[tuple[str, Any]] = [(f"goals/{i}", goal) for i, goal in enumerate(problem.goals)]
     entries += [(f"constraints/{i}", limited) for i, limited in enumerate(problem.constraints)]
     for pointer, entry in entries:
         own = entry.quantity.values(found, f"/{pointer}")
