@@ -37,7 +37,7 @@ SHORT = (1e-3, 1e-4, 1e-5, 1e-6)  # of an unknown's size, of steps straight down
 SHORTER = (1.0, 0.9, 0.5)  # parts of a step to a limit, which may be nearer than by its slope
 BACK = 3  # ways back to limits after a step
 NOISE = 1e-10  # part of the objective by which it may differ at one shape, found on two ways
-MUCH = 1e-7  # part of the objective: a last step that gains more is not near the minimum
+MUCH = 1e-8  # part of the objective: a last step that gains more is not near the minimum
 GAIN = 1e-12  # part of the objective: a step that gains less is the last
 
 
