@@ -51,6 +51,12 @@ export const login = (token: string) =>
 
 export const sessions = () => read<{ sessions: Summary[]; store?: Store }>("/v1/sessions");
 export const summary = (key: string) => read<Summary>(at(key));
+/** Whether a session has a process, and how long that has sent nothing [s]. */
+export async function pulse(key: string): Promise<{ awake: boolean; silence: number }> {
+  const answer = await ask(at(key));
+  const { awake } = (await answer.json()) as Summary;
+  return { awake, silence: Number(answer.headers.get("hookean-silence")) };
+}
 export const topology = (key: string) => read<Topology>(`${at(key)}/topology`);
 export const anchors = async (key: string) => (await read<{ anchors: Anchor[] }>(`${at(key)}/anchors`)).anchors;
 export const scene = (key: string) => read<Scene>(`${at(key)}/scene`);

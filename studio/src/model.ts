@@ -39,8 +39,6 @@ export interface Summary {
   undo: number;
   redo: number;
   awake: boolean;
-  /** How long its process has sent nothing [s]; null without a process. Only where the session alone is read. */
-  silence?: number | null;
   /** Sentences of the report. */
   warnings?: string[];
   /** In total [force length] */

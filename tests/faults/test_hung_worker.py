@@ -80,7 +80,7 @@ def test_a_session_reports_how_long_its_process_has_sent_nothing(running: Served
     process = _begun(running, "silent")
 
     def silence() -> float:
-        return float(running.client.get("/v1/sessions/silent").json()["silence"])
+        return float(running.client.get("/v1/sessions/silent").headers["hookean-silence"])
 
     wait_for(lambda: silence() < 0.5)
     process.send_signal(signal.SIGSTOP)

@@ -177,8 +177,8 @@ def test_a_session_that_is_slow_is_told_from_one_that_does_not_answer(tab: Studi
     wire.keep()
     page.get_by_text("Slow: last update").wait_for()
     assert page.get_by_text("updates arrive slowly").is_visible()
-    hangs = {**service.summary("slow"), "silence": 9.0}
-    page.route(re.compile("/v1/sessions/slow$"), lambda route: route.fulfill(json=hangs))
+    hangs = {"json": service.summary("slow"), "headers": {"hookean-silence": "9.0"}}
+    page.route(re.compile("/v1/sessions/slow$"), lambda route: route.fulfill(**hangs))
     page.get_by_text("in a long step, or hangs").wait_for()
     page.route(re.compile("/v1/sessions/slow$"), lambda route: route.abort())
     page.get_by_text("No answer: last update").wait_for()

@@ -12,7 +12,7 @@ from hookean.analysis.at_rest import AtRest
 from hookean.analysis.frozen_films import balanced, frozen_film
 from hookean.analysis.matrices import Unknowns, against_turns, factor
 from hookean.errors import InputError
-from hookean.forces import Block, Force, base, elastic
+from hookean.forces import Block, Force, base, elastic, groups
 from hookean.forces.base import Places
 from hookean.forces.membrane import Membrane
 from hookean.forces.self_weight import SelfWeight
@@ -38,6 +38,10 @@ Floats = NDArray[np.float64]
 STEPS = 12  # of Newton's method that take a form to rounding
 SETTLED = 1e-9  # part of the forces and of the size that counts as none
 HEAVY = 0.03  # part of a weight by which that of the form may differ, as stretched cloth does
+SEVERAL = (
+    "/forces/{}: {} has several cables, which keep their tension where a factor acts on the prestress; give each cable"
+    " a force of its own"
+)
 ELASTIC = ("anchor_spring", "bend", "gas", "hinge", "membrane", "beam", "power_law", "shell", "springs", "volume")
 """Internal forces and supports that stay as they are, besides those that `FREEZERS` turns into others."""
 
@@ -129,8 +133,11 @@ def freeze(scene: Scene) -> Frozen:
             block.memory = memory[part.rows]
             if issubclass(group.cls, Membrane):
                 cloth[part.number] = Membrane.second(block, state.x)
-            if group.cls is SlidingCable and (slide := taut(block, state.x)) is not None:
-                slides[part.number] = slide
+            if group.cls is SlidingCable:
+                if (slide := taut(block, state.x)) is not None:
+                    slides[part.number] = slide
+                elif len(np.unique(groups.heads(block))) > 1:
+                    notes.append(SEVERAL.format(part.number, force.name or force.kind_name))
             if group.cls.kind_name in FREEZERS and element_forces is not None:
                 columns = part.force.measure(block, state.x, element_forces[part.rows])
                 line = _line(system, stages, part, block, columns)

@@ -226,10 +226,6 @@ SCHEMAS["Session"] = {
         "undo": {"type": "integer", "description": "Edits that can be undone"},
         "redo": {"type": "integer"},
         "awake": {"type": "boolean", "description": "Whether it has a process"},
-        "silence": {
-            "type": ["number", "null"],
-            "description": "How long its process has sent nothing [s]: longer than 0.5 in a long step or if it hangs",
-        },
         "created": _NUMBER,
         "energy": {"type": ["number", "null"], "description": "Of all forces and of motion [force length]"},
         "units": {"$ref": "#/components/schemas/Units"},

@@ -54,12 +54,12 @@ async def _body(request: Request) -> tuple[bytes, list[str] | None]:
     return await read_json(request), None
 
 
-def _answer(live: Live, status: int = 200, described: dict[str, Any] | None = None, **more: Any) -> Response:
+def _answer(live: Live, status: int = 200, described: dict[str, Any] | None = None) -> Response:
     """A session as it stands, or as it was `described` when what was asked for was done."""
     headers = {"etag": live.etag(described), "cache-control": "no-store"}
     if status == 201:
         headers["location"] = f"/v1/sessions/{live.key}"
-    return JSONResponse({**summary(live, described), **more}, status, headers)
+    return JSONResponse(summary(live, described), status, headers)
 
 
 @router.post("/v1/sessions", status_code=201, summary="A session of a scene or a file", **openapi.session_body(201))
@@ -95,9 +95,13 @@ async def listing(request: Request) -> dict[str, Any]:
 )
 @reading
 async def read(request: Request, key: Key, when: When) -> Response:
-    """Revision, iteration, time, residual, status and the sentence on it, and how long its process has sent nothing."""
+    """Revision, iteration, time, residual, status and the sentence on it. The header hookean-silence has how long its
+    process has sent nothing [s]: longer than 0.5 in a long step, or if it hangs."""
     live = manager(request).find(key)
-    return unless_same(_answer(live, silence=live.silence), when)
+    answer = unless_same(_answer(live), when)
+    if (silence := live.silence) is not None:
+        answer.headers["hookean-silence"] = f"{silence:.3f}"
+    return answer
 
 
 @router.delete("/v1/sessions/{key}", status_code=204, summary="Delete a session", responses=openapi.problems(live=True))

@@ -52,12 +52,12 @@ export class Pulse {
   /** Ask by another connection than that of the frames. */
   private async ask(): Promise<void> {
     const asked = (this.asked = performance.now());
-    const found = await api.summary(this.session.key).catch(() => null);
+    const found = await api.pulse(this.session.key).catch(() => null);
     if (asked !== this.asked) return; // frames have come meanwhile
     this.asked = 0;
     if (!found) return;
     this.answered = performance.now();
     const { awake, silence } = found;
-    this.beat.value = !awake ? "gone" : 1000 * (silence ?? 0) > PATIENCE ? "stuck" : "slow";
+    this.beat.value = !awake ? "gone" : 1000 * silence > PATIENCE ? "stuck" : "slow";
   }
 }
