@@ -75,13 +75,13 @@ def sentences(search: Search, found: Equilibrium) -> list[str]:
 def other_start(search: Search) -> tuple[Floats | None, str]:
     """Values (u,) of unknowns at which variables change what none changes at the best, or it is met: of a sample within
     the bounds those that miss least, nearest to the start of them; and what that is called."""
-    from scipy.stats import qmc
-
-    best: Floats | None = None
-    kept = (np.inf, np.inf, np.inf)
     flat = unchanged(search, search.at_best())
     if not flat:
         return None, ""
+    from scipy.stats import qmc  # half a second, and most searches need none of it
+
+    best: Floats | None = None
+    kept = (np.inf, np.inf, np.inf)
     still = {pointer for _, _, pointer in flat}
     low, high = search.bounds
     low, high = np.where(np.isfinite(low), low, -REACH), np.where(np.isfinite(high), high, REACH)
