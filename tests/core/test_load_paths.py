@@ -30,6 +30,17 @@ def test_a_shallow_truss_snaps_through_along_its_closed_form() -> None:
     assert found.limit == found.critical_points[0].factor
 
 
+@pytest.mark.parametrize("increment", [5.0, 500.0, 5e6])
+def test_no_first_step_is_so_long_that_it_passes_over_a_snap(increment: float) -> None:
+    """The limit load of the closed form, from first steps of up to a million times that: both ends of such a step are
+    stable, and the way between them is straight. Points are in balance to 1e-11 of the load."""
+    half, rise, k = 1.0, 0.3, 100.0
+    there, rest = np.cbrt(np.hypot(half, rise) * half**2), np.hypot(half, rise)
+    limit = 2.0 * k * np.sqrt(there**2 - half**2) * (rest / there - 1.0)
+    found = hookean.load_path(truss(half, rise), steps=40, increment=increment)
+    np.testing.assert_allclose([point.factor for point in found.critical_points], [limit, -limit], rtol=1e-11)
+
+
 def test_a_steep_truss_leaves_its_plane_of_symmetry_first() -> None:
     """It sways where l^3 = L0 z^2 (the tangent across, 2 k (1 - L0 z^2 / l^3), vanishes), before its limit point."""
     half, rise, k = 1.0, 3.0, 100.0

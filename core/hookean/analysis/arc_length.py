@@ -29,6 +29,7 @@ NEAR = 1e-6  # of a step: two points of one path on both sides of a change are n
 FLAT = 1e-6  # of the rates about it: that of the load factor at a limit point
 RETAKEN = 8  # times a step that leaves its path is taken again, half as long
 STRAIGHT = 0.8  # cosine between a step and the path at both of its ends: one that turns more may have left its path
+STIFFER = 3.0  # times the largest rate of the load factor so far: one beyond it may have left its path, too
 LEVEL = 1e-3  # likewise, as near as halving comes
 
 
@@ -59,6 +60,7 @@ class Follower:
         self.state = rest.state.copy()
         self.unknowns = Unknowns.of(rest.system, rest.state, rest.free)
         self.shortened = 1.0
+        self.steepest = 0.0  # rate of the load factor at all points
         self.hinged = False  # whether the tangent is singular at the start
         self.constant = all(group.cls.constant for group in load_system.groups)
 
@@ -80,15 +82,17 @@ class Follower:
 
     def onward(self, points: list[Point], reach: float) -> tuple[Point | None, list[tuple[str, Point]]]:
         """The next point, `reach` away or less, and the critical points before it: by shorter steps where one leaves
-        its path. After `RETAKEN` of them the path goes on where the last one came to."""
-        step = self.step(points, reach)
-        for _ in range(RETAKEN):
+        its path. After `RETAKEN` of them the path goes on where the last one came to. The first step may be any number
+        of times too long, since its length is given by a load factor."""
+        tried, step = self.shortened, self.step(points, reach)
+        for _ in range(RETAKEN if len(points) > 1 else CUTS):
             if step is None:
                 break
-            found = self.between(points[-1], step) if _straight(points[-1], step) else None
+            found = self.between(points[-1], step) if self._followed(points[-1], step) else None
             if found is not None:
+                self.steepest = max(self.steepest, abs(step.rate()))
                 return step, found
-            self.shortened *= 0.5
+            self.shortened = tried = 0.5 * min(tried, self.shortened)
             step = self.step(points, reach)
         return step, (step and self.between(points[-1], step)) or []
 
@@ -164,6 +168,16 @@ class Follower:
             elif crossed > 1 or not level:  # else the limit point of a step beside this one
                 found.append(("bifurcation", point))
         return sorted(found, key=lambda item: float(np.linalg.norm(item[1].moved)))
+
+    def _followed(self, before: Point, after: Point) -> bool:
+        """Whether a step seems to have followed its path: nearly straight; the load factor changed as its rates at both
+        ends have it, not as with two limit points between; and the structure is not many times as stiff as anywhere
+        before, as it is beyond a snap-through."""
+        out, at_end = self._rate_out(before, after), after.rate()
+        between = (after.factor - before.factor) / float(np.linalg.norm(after.moved))
+        even = abs(between - 0.5 * (out + at_end)) <= 0.5 * max(abs(out), abs(at_end))
+        stiff = abs(at_end) > STIFFER * max(self.steepest, abs(before.rate()))
+        return _straight(before, after) and even and not stiff
 
     def _rate_out(self, before: Point, after: Point) -> float:
         """The rate at which the load factor leaves a point on the way to another."""

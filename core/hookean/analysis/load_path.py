@@ -102,7 +102,8 @@ def load_path(
     the path passes limit points (snap-through) and turns back (snap-back). Limit points and bifurcations between two
     points are found to rounding by the rate of the load factor, or bracketed by the number of negative eigenvalues;
     where the points between do not lead to one, the step left its path and is taken again, shorter. So is a step that
-    turns by more than 37 degrees from the path at one of its ends. The path goes straight on at bifurcations.
+    turns by more than 37 degrees from the path at one of its ends, that passes two limit points, or that ends where the
+    structure is three times as stiff as before. The path goes straight on at bifurcations.
 
     - `scene`: The structure with its loads.
     - `loads`: Names (or kinds) of the loads that change; default: all. The others act in full from the start.

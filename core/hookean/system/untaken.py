@@ -18,8 +18,8 @@ PART = 1e-6  # of a moment along such an axis
 
 def untaken_moment(system: System, state: State) -> str:
     """Which particle has a moment [force length] about an axis n about which no element resists its turning, as a
-    sentence without its full stop: n of the part K of the tangent of its own turns, K n = 0. Such turns move nothing,
-    so they have no end. Empty where there is none."""
+    sentence without its full stop: n of the part K of the tangent of its own turns, K n = 0. Such turns move nothing
+    and never stop. Returns an empty text if every moment is taken."""
     own, first = system.slots, system.slots.first
     if not len(own):
         return ""
