@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pytest
 
 import hookean
 from hookean import Scene
@@ -70,3 +71,16 @@ def test_a_moment_where_all_beams_are_hinged_is_named_at_once() -> None:
 
 def test_a_moment_that_one_beam_takes_is_in_balance() -> None:
     assert hinged(release_start="").converged
+
+
+def test_a_wire_beside_a_mast_takes_its_moment() -> None:
+    """The mast is 1e12 times as stiff against turns; a wire of EI = 7.5e-5 N m² at its end turns by M L / EI."""
+    mast = {"kind": "beam", "particles": [[0, 1]], "E": 2e11, "G": 8e10, "A": 0.1, "Iy": 1e-3, "Iz": 1e-3, "J": 2e-3}
+    wire = {"kind": "beam", "particles": [[2, 3]], "E": 25e9, "G": 1e10, "A": 2e-7}
+    wire |= {"Iy": 3e-15, "Iz": 3e-15, "J": 6e-15}
+    load = {"kind": "unary", "particles": [3], "vector": [0, 0, 0], "moment": [0, 1e-5, 0]}
+    spec = {"particles": [[0, 0, 0], [0, 0, 5], [10, 0, 0], [11, 0, 0]], "forces": [mast, wire, load]}
+    found = hookean.relax(Scene.read({**spec, "anchors": [{"particles": [0, 2], "rotations": "xyz"}]}))
+    assert found.converged
+    w, _, y, _ = found.rotations["quaternions"][3]
+    assert 2.0 * np.arctan2(y, w) == pytest.approx(1e-5 / 7.5e-5, rel=1e-4)

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from hookean.system.state import State
     from hookean.system.system import System
 
-NOTHING = 1e-9  # part of the largest stiffness against turns that counts as none
+NOTHING = 1e-12  # part of the stiffness of the elements at a particle that counts as none against its turns
 PART = 1e-6  # of a moment along such an axis
 
 
@@ -27,7 +27,7 @@ def untaken_moment(system: System, state: State) -> str:
     size = lengths(loads)
     if not size.any():
         return ""
-    stiffness = np.zeros((len(own), 3, 3))
+    stiffness, about = np.zeros((len(own), 3, 3)), np.zeros(len(own))
     for group, memory in zip(system.groups, state.memory, strict=True):
         if group.cls.role == "load" or not group.cls.turns:
             continue
@@ -36,10 +36,11 @@ def untaken_moment(system: System, state: State) -> str:
             mine = (rows >= first.start) & (rows < first.stop)
             along = slice(3 * place, 3 * place + 3)
             np.add.at(stiffness, rows[mine] - first.start, blocks[mine, along, along])
+            np.maximum.at(about, rows[mine] - first.start, np.abs(blocks[mine]).max(axis=(1, 2), initial=0.0))
     free = state.free[first]
     stiffness *= free[:, :, None] * free[:, None, :]
     values, axes = np.linalg.eigh(stiffness)
-    loose = np.abs(values) <= NOTHING * float(np.abs(values).max())
+    loose = np.abs(values) <= NOTHING * about[:, None]
     parts = np.einsum("rij,ri->rj", axes, loads) * loose
     left = np.einsum("rij,rj->ri", axes, parts)
     lost = np.flatnonzero(lengths(left) > PART * size.max())

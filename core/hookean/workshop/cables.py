@@ -87,7 +87,7 @@ def cables(model: Scene | Frozen, *, stretch: float = 0.0, fitting: float = 0.0)
 
     Elements of one force that continue each other, straight on where several meet, are a cable; at a support where they
     turn by 45 degrees or more it ends. Its unstressed length is the sum of l EA / (EA + T); cut it to unstressed
-    length / (1 + stretch) - 2 fitting. A sliding cable goes on over its saddles; its unstressed length is its own.
+    length / (1 + stretch) - 2 fitting. A sliding cable continues over its saddles; its unstressed length is its own.
 
     - `model`: A scene whose form is found and frozen (see `freeze`), or a frozen one.
     - `stretch`: The construction stretch of new rope, which stays after its first loading [-].
