@@ -50,6 +50,26 @@ def test_an_anchor_is_dragged_and_the_form_follows(studio: Studio):
     assert service.summary(key)["undo"] == 1  # a gesture is one edit
 
 
+AWAY = """([particle, across]) => {
+    const canvas = document.querySelector("canvas");
+    const { x, y } = window.hookean.project(particle);
+    const fire = (kind, clientX) =>
+        canvas.dispatchEvent(new PointerEvent(kind, { pointerId: 1, isPrimary: true, clientX, clientY: y, bubbles: true }));
+    for (const [kind, at] of [["down", x], ["move", x + across / 2], ["move", x + across], ["up", x + across]])
+        fire(`pointer${kind}`, at);
+}"""
+
+
+def test_the_eye_stays_where_it_is_after_a_drag(cable: Studio):
+    """A form that leaves the picture by itself is followed; one that was dragged out of it, be it between two pictures,
+    is not: the next press would miss what it aims at."""
+    stays = cable.place(9)
+    cable.page.evaluate(AWAY, [0, -3000])
+    cable.until(lambda: cable.seen(0)[0] < -1000, what="the anchor to be drawn far outside")
+    cable.settled()
+    assert np.abs(np.subtract(cable.place(9), stays)).max() < 1.0
+
+
 WATCHED = """() => {
     window.missing = 0;
     const look = () => {

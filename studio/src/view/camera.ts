@@ -47,7 +47,7 @@ export class Eye {
     this.controls.zoomToCursor = true;
     this.controls.zoomSpeed = 1.4;
     this.controls.addEventListener("change", changed);
-    this.controls.addEventListener("start", () => (this.glide = null));
+    this.controls.addEventListener("start", () => this.stay());
   }
 
   /** How it is looked at now. */
@@ -150,6 +150,11 @@ export class Eye {
     const made: [Vector3, Vector3, Vector3] = [new Vector3(), new Vector3(), new Vector3()];
     this.camera.matrixWorld.extractBasis(...made);
     return made;
+  }
+
+  /** End a glide where it is. */
+  stay(): void {
+    this.glide = null;
   }
 
   /** On with a glide; whether it goes on. */

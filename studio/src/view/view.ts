@@ -244,8 +244,14 @@ class Drawing implements View {
       },
       face: (x, y) => this.face(x, y),
       takes: (particle) => this.takes(particle),
-      orbits: (allowed) => (eye.controls.enabled = allowed),
-      changed: this.ask,
+      orbits: (allowed) => {
+        eye.controls.enabled = allowed;
+        if (!allowed) eye.stay();
+      },
+      changed: () => {
+        if (this.hand.led) this.untouched = false;
+        this.ask();
+      },
     };
   }
 
@@ -471,8 +477,7 @@ class Drawing implements View {
   }
 
   private follow(frame: Frame): void {
-    if (this.hand.led) this.untouched = false;
-    if (!this.untouched || this.following || this.eye.holds(frame.positions)) return;
+    if (!this.untouched || this.following || !this.eye.controls.enabled || this.eye.holds(frame.positions)) return;
     this.following = true;
     this.eye.fit(this.body(frame));
   }
