@@ -53,8 +53,8 @@ def test_an_anchor_is_dragged_and_the_form_follows(studio: Studio):
 AWAY = """([particle, across]) => {
     const canvas = document.querySelector("canvas");
     const { x, y } = window.hookean.project(particle);
-    const fire = (kind, clientX) =>
-        canvas.dispatchEvent(new PointerEvent(kind, { pointerId: 1, isPrimary: true, clientX, clientY: y, bubbles: true }));
+    const told = { pointerId: 1, isPrimary: true, clientY: y, bubbles: true };
+    const fire = (kind, clientX) => canvas.dispatchEvent(new PointerEvent(kind, { ...told, clientX }));
     for (const [kind, at] of [["down", x], ["move", x + across / 2], ["move", x + across], ["up", x + across]])
         fire(`pointer${kind}`, at);
 }"""
