@@ -49,8 +49,9 @@ def hinge_hessian(x, indices, parameters, memory, blocks):  # type: ignore[no-un
         stiff = parameters[e, 0] if off == elastic else 0.0
         bends(x, a, b, c, d, g, h)
         for i in range(12):
-            for j in range(12):
-                blocks[e, i, j] = stiff * g[i // 3, i % 3] * g[j // 3, j % 3] + parameters[e, 0] * elastic * h[i, j]
+            for j in range(i + 1):
+                both = stiff * g[i // 3, i % 3] * g[j // 3, j % 3] + parameters[e, 0] * elastic * h[i, j]
+                blocks[e, i, j] = blocks[e, j, i] = both
 
 
 def hinge_stressed(x, indices, parameters, memory, blocks):  # type: ignore[no-untyped-def]
