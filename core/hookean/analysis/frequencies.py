@@ -86,7 +86,8 @@ def frequencies(model: Scene | Result | Simulation, count: int = 6, *, masses: A
     - `model`: A scene (which is relaxed), a result that converged, or a simulation at rest.
     - `count`: How many modes; fewer are returned where the shape has fewer free axes.
     - `masses`: Masses (n,) of the particles, or one for all [force time^2/length]; "self_weight": those of the
-      `self_weight` forces, their weight over g; default: those of the scene, 1 unless given.
+      `self_weight` forces that act, their weight over g without the factors of a load case; default: those of the
+      scene, 1 unless given.
 
     Raises InputError for a shape that is not at rest, a force without a tangent, or masses that are not positive.
     Source: Clough and Penzien, Dynamics of Structures, 1993, chapters 11 to 13; Ericsson and Ruhe, The spectral
@@ -140,7 +141,8 @@ def _masses(rest: AtRest, given: Any) -> Floats:
 
 
 def _weighed(rest: AtRest) -> Floats:
-    """Masses (n,) of the `self_weight` forces that act; InputError where a particle that moves has none."""
+    """Masses (n,) of the `self_weight` forces that act, without factors of load cases; InputError where a particle that
+    moves has none."""
     system = rest.system
     found = np.zeros(system.slots.count)
     for group in system.groups:
@@ -149,9 +151,9 @@ def _weighed(rest: AtRest) -> Floats:
         for part in group.parts:
             block, force = group.of(part), part.force
             assert isinstance(force, SelfWeight)
-            g = gravity(system.scene.units) if force.gravity is None else force.gravity
+            g = (gravity(system.scene.units) if force.gravity is None else force.gravity) * force.acting
             weight = np.linalg.norm(block.parameters[:, :3], axis=1)
-            found += np.bincount(block.indices[:, 0], weight / g if g > 0.0 else 0.0 * weight, len(found))
+            found += np.bincount(block.indices[:, 0], weight / abs(g) if g != 0.0 else 0.0 * weight, len(found))
     without = found <= 0.0
     moves = np.flatnonzero(without & (rest.free[: len(found)] > 0.0).any(axis=1))
     if len(moves):
