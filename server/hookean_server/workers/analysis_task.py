@@ -104,7 +104,7 @@ ANALYSES: dict[str, Analysis] = {
     "frequencies": Analysis(
         hookean.frequencies, Frequencies, ("frequencies", "modes", "effective_masses", "units", "notes")
     ),
-    "buckling": Analysis(hookean.buckling, Buckling, ("factors", "modes", "particles", "loads", "units")),
+    "buckling": Analysis(hookean.buckling, Buckling, ("factors", "modes", "particles", "loads", "units", "notes")),
     "load-path": Analysis(hookean.load_path, LoadPath, ("factors", "particles", "stable", "critical_points", "units")),
     "mechanisms": Analysis(
         hookean.mechanisms, Nothing, ("mechanisms", "free_turns", "self_stress_states", "modes", "units")
