@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from hookean.analysis.at_rest import AtRest
 from hookean.analysis.matrices import Unknowns, against_turns, condensed, factor, largest_row
+from hookean.analysis.one_way import between
 from hookean.errors import InputError
 from hookean.forces.self_weight import SelfWeight
 from hookean.running.result import Result
@@ -34,7 +35,7 @@ class Frequencies:
     motions that grow (the shape is unstable there: the square of the angular frequency is negative). `modes` (k, n, 3)
     the motions of the particles, the largest part of each 1 [-]. `effective_masses` (k, 3) [mass]: the mass that moves
     with a mode when the supports shake along x, y or z, out of `mass` (3,) that can move. `notes` are sentences on the
-    masses.
+    masses, and on elements that are just where they go slack.
     """
 
     frequencies: Floats
@@ -116,7 +117,7 @@ def frequencies(model: Scene | Result | Simulation, count: int = 6, *, masses: A
         np.asarray((rest.free * mass[:, None])[:own_rows].sum(axis=0)),
         rest.state.x[:own_rows],
         rest.system.scene.units,
-        (UNIT_MASSES,) if masses is None and (mass[:own_rows] == 1.0).all() else (),
+        (*((UNIT_MASSES,) if masses is None and (mass[:own_rows] == 1.0).all() else ()), *between(rest)),
     )
 
 

@@ -1,4 +1,5 @@
-"""Linear buckling names cables and struts that go slack or taut before its first factor."""
+"""Linear buckling names cables and struts that go slack or taut before its first factor, and frequencies those that are
+just where they do."""
 
 from __future__ import annotations
 
@@ -55,3 +56,19 @@ def test_of_two_ties_the_one_that_the_wind_stretches_braces_alone() -> None:
     """The other one is slack without the roof and stays so: half the factor of both, and no note."""
     found = hookean.buckling(braced(push=1.0, tension_only=True), 1, loads=["roof"])
     assert found.factors[0] == pytest.approx(1e4 / 5.0 * 0.8**2 * 3.0 / 2.0, rel=0.05)
+
+
+@pytest.mark.parametrize(("way", "count"), [({"tension_only": True}, 2), ({"compression_only": True}, 2), ({}, 0)])
+def test_frequencies_name_ties_without_prestress(way: dict[str, Any], count: int) -> None:
+    """At rest both ties are as long as drawn. They count in full, k = 2 E A / L cos^2 for the sway of two masses of 1,
+    while only one of them works at a time."""
+    scene = braced(**way)
+    shape = hookean.relax(scene.model_copy(update={"forces": scene.forces[:2]}))
+    found = hookean.frequencies(shape, 1, masses=1.0)
+    assert found.angular_frequencies[0] ** 2 == pytest.approx(1e4 / 5.0 * 0.8**2, rel=0.03)
+    assert len(found.notes) == (count > 0)
+    if count:
+        assert found.notes[0].startswith("2 of 2 elements of ties are just where they go slack, the first is element 0")
+    taut = braced(force=1.0, tension_only=True)
+    shape = hookean.relax(taut.model_copy(update={"forces": taut.forces[:2]}))
+    assert hookean.frequencies(shape, 1, masses=1.0).notes == ()
