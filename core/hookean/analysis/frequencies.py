@@ -25,6 +25,10 @@ ROUNDING = 4.0 * float(np.finfo(np.float64).eps)  # part of the largest eigenval
 MOST = 1000
 WEIGHED = SelfWeight.kind_name  # masses of the self-weight
 UNIT_MASSES = f'every particle has the mass 1, the default; for a real structure give masses, or masses "{WEIGHED}"'
+OF_FORM = (
+    "these are frequencies of the form, whose films and lines of constant tension are not elastic; for those of the"
+    " frozen model pass the result of a load case"
+)
 
 
 @dataclass(frozen=True)
@@ -117,8 +121,15 @@ def frequencies(model: Scene | Result | Simulation, count: int = 6, *, masses: A
         np.asarray((rest.free * mass[:, None])[:own_rows].sum(axis=0)),
         rest.state.x[:own_rows],
         rest.system.scene.units,
-        (*((UNIT_MASSES,) if masses is None and (mass[:own_rows] == 1.0).all() else ()), *between(rest)),
+        (*_notes(rest, masses is None and bool((mass[:own_rows] == 1.0).all())), *between(rest)),
     )
+
+
+def _notes(rest: AtRest, unit_masses: bool) -> list[str]:
+    """Sentences on masses, and on a form that is to be frozen."""
+    stages = rest.system.scene.stages
+    frozen = stages is not None and bool(stages.freeze or stages.films)
+    return [UNIT_MASSES] * unit_masses + [OF_FORM] * frozen
 
 
 def _masses(rest: AtRest, given: Any) -> Floats:
