@@ -326,6 +326,31 @@ def test_analyse_prints_and_writes_what_the_functions_give(folder: Path) -> None
     assert "natural" not in run("analyse", "truss.json", "-q").output
 
 
+def test_analyse_of_a_load_case_vibrates_under_its_loads(folder: Path) -> None:
+    """A string of a tension that the case changes by its weight in the middle: not the frequencies of the form."""
+    scene = {
+        "particles": [[-1, 0, 0], [0, 0, 0], [1, 0, 0]],
+        "forces": [
+            {"kind": "constant_tension", "name": "string", "particles": [[0, 1], [1, 2]], "tension": 10},
+            {"kind": "unary", "name": "lamp", "particles": [1], "vector": [0, 0, -8]},
+        ],
+        "anchors": [{"particles": [0, 2]}],
+        "load_cases": {"lamp": {"forces": ["lamp"]}},
+        "stages": {"freeze": {"string": {"axial_stiffness": 1000}}},
+    }
+    (folder / "string.json").write_text(json.dumps(scene))
+    case = hookean.load_cases(hookean.Scene.read(scene)).cases["lamp"].result
+    wanted = hookean.frequencies(case, 3).frequencies
+    form = hookean.frequencies(hookean.Scene.read(scene), 3)
+    assert wanted[0] > 1.2 * form.frequencies[0]
+    assert "frequencies of the form" in form.notes[-1]
+    for asked in ((), ("--frequencies", "3", "--buckling", "1"), ("--mechanisms", "--frequencies", "3")):
+        found = run("analyse", "string.json", *asked, "--case", "lamp")
+        assert f"mode 1: {wanted[0]:.6g} 1/s" in found.output
+        assert "frequencies of the form" not in found.output
+    assert run("analyse", "string.json", "--mechanisms", "--case", "storm").exit_code == 2
+
+
 def test_relax_solves_a_load_case_and_checks_it(folder: Path) -> None:
     """Displacements from the form, reactions and slack of the case; the loads of the case do not act without it."""
     scene = {

@@ -17,11 +17,12 @@ is missing).
 
 The section's axis x runs along the beam, z is in the plane of x and `normal`, and y = z cross x.
 Rows that are straight without stress are bent in, and twisted in where the normals turn along the
-row. Turns of particles whose beams are all hinged move nothing, and count as no mechanism. In
-motion a particle has an isotropic inertia, that of a rod of its mass and of the mean length of the
-beams there. Sources: Oran, "Tangent stiffness in space frames", 1973 (angles to the chord, and
-shortening); Bergou et al., "Discrete elastic rods", 2008 (twist); Przemieniecki, Theory of matrix
-structural analysis, 1968, 5.6 (shear).
+row. A hinge about one axis, or about all, may turn as far as it likes. Turns of particles whose
+beams are all hinged move nothing, and count as no mechanism. In motion a particle has an isotropic
+inertia, that of a rod of its mass and of the mean length of the beams there. Sources: Oran,
+"Tangent stiffness in space frames", 1973 (angles to the chord, and shortening); Bergou et al.,
+"Discrete elastic rods", 2008 (twist); Przemieniecki, Theory of matrix structural analysis, 1968,
+5.6 (shear).
 
 E = EA u^2/(2L) + EI (4a^2+4ab+4b^2)/(2L) + GJ phi^2/(2L)
 """

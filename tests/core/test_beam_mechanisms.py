@@ -215,3 +215,20 @@ def test_a_result_counts_in_its_shape() -> None:
 def test_nothing_to_count_is_one_sentence() -> None:
     with pytest.raises(InputError, match="no bars and no beams; add springs"):
         hookean.mechanisms(Scene.read({"particles": [[0, 0, 0]]}))
+
+
+def test_what_holds_a_structure_beside_bars_and_beams_is_named() -> None:
+    """A beam afloat has six rigid motions, and springs to the ground do not count; loads are not named."""
+    ground = {
+        "kind": "support",
+        "name": "soil",
+        "particles": [0],
+        "stiffness": [1, 1, 1],
+        "rotation_stiffness": [1, 1, 1],
+    }
+    push = {"kind": "unary", "particles": [1], "vector": [0, 0, -1]}
+    found = hookean.mechanisms(frame(LINE[:2], [[0, 1]], more=[ground, push]))
+    assert (found.rigid_motions, found.left_out) == (6, ("soil",))
+    assert found.summary()[-1] == "counted without soil" and found.to_dict()["left_out"] == ["soil"]
+    alone = hookean.mechanisms(frame(LINE[:2], [[0, 1]], more=[push]))
+    assert alone.left_out == () and len(alone.summary()) == 4

@@ -109,3 +109,25 @@ def test_what_is_no_scene_is_named() -> None:
             asked(result)
     with pytest.raises(InputError, match="scene: a Scene is expected, not a LoadCases"):
         hookean.cables(cases)
+
+
+@pytest.mark.parametrize("weight", [{"total": 50.0, "particles": [1]}, {"per_length": 50.0, "particles": [[0, 1]]}])
+def test_factors_on_a_weight_are_no_masses(weight: dict[str, Any]) -> None:
+    """A weight on a vertical wire of k, of which all or half is on its lower end: omega^2 = k g / W, whatever the
+    factors on the weight, in a case and in combinations."""
+    scene = Scene.read(
+        {
+            "particles": [[0, 0, 0], [0, 0, -1]],
+            "forces": [
+                {"kind": "springs", "particles": [[0, 1]], "stiffness": 1e5},
+                {"kind": "self_weight", "name": "weight", **weight},
+            ],
+            "anchors": [{"particles": [0]}, {"particles": [1], "axes": "xy"}],
+            "load_cases": {"dead": {"forces": ["weight"], "factor": 2.0}},
+            "combinations": {"ULS": {"dead": 1.35}, "up": {"dead": -0.9}},
+        }
+    )
+    square = 1e5 * 9.80665 / (50.0 if "total" in weight else 25.0)
+    for case in hookean.load_cases(scene).cases.values():
+        found = hookean.frequencies(case.result, 1, masses="self_weight")
+        assert found.angular_frequencies[0] == pytest.approx(square**0.5, rel=1e-9)

@@ -170,3 +170,35 @@ def test_what_a_file_of_beams_cannot_hold_is_named(tmp_path: Path) -> None:
         "purlin: the file does not hold the bending of rods that are straight without stress.",
     ]
     assert block((tmp_path / "frame.inp").read_text(), "SPRING") == [["1"], ["1.0"]]
+
+
+def test_what_strains_far_from_the_points_of_the_start_is_named(tmp_path: Path) -> None:
+    """A slack cable beside a mast: with a logarithmic strain from the points and the stress of the file, its force is
+    not that of the result, and saving says so. Drawn where it hangs, it has that force."""
+    drawn = [[0, 0, 0], [0, 0, 2], [2, 0, 2], [4, 0, 2]]
+    spec: Spec = {
+        "particles": drawn,
+        "forces": [
+            {"kind": "beam", "name": "mast", "particles": [[0, 1]], **TUBE},
+            {"kind": "springs", "name": "cable", "particles": [[1, 2], [2, 3]], "axial_stiffness": 50.0,
+             "rest_length": 2.2},
+            {"kind": "unary", "particles": [2], "vector": [0, 0, -1e-2]},
+        ],
+        "anchors": [{"particles": [0], "rotations": "xyz"}, {"particles": [3]}],
+    }  # fmt: skip
+
+    def saved(points: Any) -> tuple[list[str], float, float]:
+        """What saving says, the force that the file gives, and that of the result."""
+        found = hookean.relax(Scene.read({**spec, "particles": points}))
+        said = found.save(tmp_path / "cable.inp")[1:]
+        stress = float(block((tmp_path / "cable.inp").read_text(), "INITIAL CONDITIONS")[0][1])
+        length, before = (np.linalg.norm(np.subtract(p[2], p[1])) for p in (found.particles, points))
+        return said, stress + 50.0 * np.log(length / before), found.force("cable")["force"][0]
+
+    said, force, real = saved(drawn)
+    assert force > 10.0 * real  # 2 m to 2.2 m: 9.5 % logarithmic, 9.1 % of the rest length
+    assert len(said) == 1
+    assert said[0].startswith("The points are those of the start, from which cable strain by up to 10 %: ")
+    said, force, real = saved(hookean.relax(Scene.read(spec)).particles)
+    assert not said
+    assert force == pytest.approx(real, rel=0.01)

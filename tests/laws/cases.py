@@ -171,7 +171,8 @@ def _beams() -> list[Case]:
     """Beams bent in, with hinged ends; and what acts on their orientations: moments, and supports of rotations."""
     beam, x = Beam.example()
     bent = beam.replaced(curvature="straight", release_start="y", release_end="z", offset_end=np.zeros(3))
-    found = [case_of("beam, bent in and hinged", bent, x)]
+    spun = beam.replaced(release_start=["x", "xyz"])
+    found = [case_of("beam, bent in and hinged", bent, x), case_of("beam, hinged about x, and about all", spun, x)]
     for name, more in (
         ("unary, moments", Unary(particles=[0, 2], vector=[0, 0, 1], moment=[[3.0, 1.0, -2.0], [0.0, 4.0, 1.0]])),
         ("support, rotations", Support(particles=[1, 2], rotation_stiffness=[[3.0, 1.0, 2.0], [0.0, 4.0, 4.0]])),

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from hookean.errors import InputError
 from hookean.forces.beam import Beam
-from hookean.forces.beam_element import ARM, FRAME, OFFSET
+from hookean.forces.beam_element import ABOUT_Y, ABOUT_Z, ARM, FRAME, HINGE, OFFSET
 
 Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -74,6 +74,11 @@ def beam_columns(system: Any, state: Any, beams: BeamPlaces) -> Floats:
             "model", f"beam {int(np.argmin(length))} has zero length and no direction; move its ends apart"
         )
     e = chord / length[:, None]
+    for hinge, axis, other, sign in ((ABOUT_Y, 1, 2, -1.0), (ABOUT_Z, 2, 1, 1.0)):  # turned to the chord
+        turned_to = sign * np.cross(axes[:, :, axis], e[:, None])
+        axes[:, :, other] = np.where(
+            (beams.parameters[:, HINGE : HINGE + 2] == hinge)[:, :, None], turned_to, axes[:, :, other]
+        )
     moved, twisted = np.zeros((count, 6, 2, 3)), np.zeros((count, 6, 2, 3))  # by force and end: of u, and of theta
     for end, sign in ((0, -1.0), (1, 1.0)):
         moved[:, 0, end] = sign * e

@@ -14,6 +14,7 @@ from hookean.analysis.at_rest import AtRest, divided, relaxed
 from hookean.analysis.frequencies import MOST, _scaled
 from hookean.analysis.load_cases import growing
 from hookean.analysis.matrices import Unknowns, against_turns, factor
+from hookean.analysis.one_way import passing
 from hookean.analysis.stress_stiffness import known, stress_stiffness
 from hookean.errors import InputError
 from hookean.scene.scene import Scene
@@ -31,7 +32,8 @@ class Buckling:
 
     `factors` (k,) [-]: times these loads it buckles, the smallest first (all positive; none where the loads stiffen
     it). `modes` (k, n, 3) [-] how it buckles, the largest part of each 1. `particles` (n, 3) [length] is the shape
-    without these loads, and `loads` their names.
+    without these loads, and `loads` their names. `notes` are sentences on elements that go slack or taut before the
+    first factor.
     """
 
     factors: Floats
@@ -39,15 +41,17 @@ class Buckling:
     particles: Floats = field(repr=False)
     loads: tuple[str, ...] = ()
     units: Units = field(default_factory=Units)
+    notes: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         return "\n".join(["Buckling", *(f"  {line}" for line in self.summary())])
 
     def summary(self) -> list[str]:
-        """A line for each factor."""
+        """A line for each factor, and notes."""
         if not len(self.factors):
             return ["the loads do not make the structure buckle"]
-        return [f"mode {i + 1}: buckles at {factor:.6g} times the loads" for i, factor in enumerate(self.factors)]
+        lines = [f"mode {i + 1}: buckles at {factor:.6g} times the loads" for i, factor in enumerate(self.factors)]
+        return [*lines, *self.notes]
 
     def to_dict(self) -> dict[str, Any]:
         """As plain lists and numbers, by the names of the HTTP answer."""
@@ -57,6 +61,7 @@ class Buckling:
             "particles": self.particles.tolist(),
             "loads": list(self.loads),
             "units": self.units.model_dump(),
+            "notes": list(self.notes),
         }
 
 
@@ -103,7 +108,9 @@ def buckling(scene: Scene, count: int = 3, *, loads: Sequence[str] | None = None
     shape = (-1, len(rest.state.x), 3)
     count = rest.system.slots.count
     shapes = np.array(modes).reshape(shape)[:, :count]
-    return Buckling(-1.0 / inverse[kept], shapes, rest.state.x[:count], names, scene.units)
+    factors = -1.0 / inverse[kept]
+    notes = passing(rest, moved, float(factors[0])) if len(factors) else ()
+    return Buckling(factors, shapes, rest.state.x[:count], names, scene.units, notes)
 
 
 def _change(unknowns: Unknowns, rest: AtRest, moved: Floats) -> Any:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from hookean.analysis.at_rest import AtRest
 from hookean.analysis.matrices import Unknowns, against_turns, condensed, factor, largest_row
+from hookean.analysis.one_way import between
 from hookean.errors import InputError
 from hookean.forces.self_weight import SelfWeight
 from hookean.running.result import Result
@@ -24,6 +25,10 @@ ROUNDING = 4.0 * float(np.finfo(np.float64).eps)  # part of the largest eigenval
 MOST = 1000
 WEIGHED = SelfWeight.kind_name  # masses of the self-weight
 UNIT_MASSES = f'every particle has the mass 1, the default; for a real structure give masses, or masses "{WEIGHED}"'
+OF_FORM = (
+    "these are frequencies of the form, whose films and lines of constant tension are not elastic; for those of the"
+    " frozen model pass the result of a load case"
+)
 
 
 @dataclass(frozen=True)
@@ -34,7 +39,7 @@ class Frequencies:
     motions that grow (the shape is unstable there: the square of the angular frequency is negative). `modes` (k, n, 3)
     the motions of the particles, the largest part of each 1 [-]. `effective_masses` (k, 3) [mass]: the mass that moves
     with a mode when the supports shake along x, y or z, out of `mass` (3,) that can move. `notes` are sentences on the
-    masses.
+    masses, and on elements that are just where they go slack.
     """
 
     frequencies: Floats
@@ -86,7 +91,8 @@ def frequencies(model: Scene | Result | Simulation, count: int = 6, *, masses: A
     - `model`: A scene (which is relaxed), a result that converged, or a simulation at rest.
     - `count`: How many modes; fewer are returned where the shape has fewer free axes.
     - `masses`: Masses (n,) of the particles, or one for all [force time^2/length]; "self_weight": those of the
-      `self_weight` forces, their weight over g; default: those of the scene, 1 unless given.
+      `self_weight` forces that act, their weight over g without the factors of a load case; default: those of the
+      scene, 1 unless given.
 
     Raises InputError for a shape that is not at rest, a force without a tangent, or masses that are not positive.
     Source: Clough and Penzien, Dynamics of Structures, 1993, chapters 11 to 13; Ericsson and Ruhe, The spectral
@@ -115,8 +121,15 @@ def frequencies(model: Scene | Result | Simulation, count: int = 6, *, masses: A
         np.asarray((rest.free * mass[:, None])[:own_rows].sum(axis=0)),
         rest.state.x[:own_rows],
         rest.system.scene.units,
-        (UNIT_MASSES,) if masses is None and (mass[:own_rows] == 1.0).all() else (),
+        (*_notes(rest, masses is None and bool((mass[:own_rows] == 1.0).all())), *between(rest)),
     )
+
+
+def _notes(rest: AtRest, unit_masses: bool) -> list[str]:
+    """Sentences on masses, and on a form that is to be frozen."""
+    stages = rest.system.scene.stages
+    frozen = stages is not None and bool(stages.freeze or stages.films)
+    return [UNIT_MASSES] * unit_masses + [OF_FORM] * frozen
 
 
 def _masses(rest: AtRest, given: Any) -> Floats:
@@ -140,7 +153,8 @@ def _masses(rest: AtRest, given: Any) -> Floats:
 
 
 def _weighed(rest: AtRest) -> Floats:
-    """Masses (n,) of the `self_weight` forces that act; InputError where a particle that moves has none."""
+    """Masses (n,) of the `self_weight` forces that act, without factors of load cases; InputError where a particle that
+    moves has none."""
     system = rest.system
     found = np.zeros(system.slots.count)
     for group in system.groups:
@@ -149,9 +163,9 @@ def _weighed(rest: AtRest) -> Floats:
         for part in group.parts:
             block, force = group.of(part), part.force
             assert isinstance(force, SelfWeight)
-            g = gravity(system.scene.units) if force.gravity is None else force.gravity
+            g = (gravity(system.scene.units) if force.gravity is None else force.gravity) * force.acting
             weight = np.linalg.norm(block.parameters[:, :3], axis=1)
-            found += np.bincount(block.indices[:, 0], weight / g if g > 0.0 else 0.0 * weight, len(found))
+            found += np.bincount(block.indices[:, 0], weight / abs(g) if g != 0.0 else 0.0 * weight, len(found))
     without = found <= 0.0
     moves = np.flatnonzero(without & (rest.free[: len(found)] > 0.0).any(axis=1))
     if len(moves):

@@ -9,6 +9,7 @@ import numpy as np
 
 from hookean.errors import InputError
 from hookean.forces import Force
+from hookean.forces.self_weight import SelfWeight
 from hookean.forces.springs import Springs
 from hookean.values.columns import LARGEST
 
@@ -37,7 +38,8 @@ def scaled(load: Force, factor: float) -> Force:
                 raise InputError("/load_cases", said)
     if getattr(load, "material", None) is not None:
         changed["factor"] = factor * getattr(load, "factor", 1.0)
-    return load.replaced(**changed)
+    other = load.replaced(**changed)
+    return other.in_case(factor) if isinstance(other, SelfWeight) else other
 
 
 def warmed(force: Force, expansion: float, degrees: float, own: Any = 0.0) -> Force:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from hookean.analysis.beam_strains import BeamPlaces, beam_columns, beam_places
 from hookean.errors import InputError
 from hookean.forces import KINDS
+from hookean.forces.beam import Beam
 from hookean.forces.beam_element import OFFSET
 from hookean.running.result import Result
 from hookean.scene.scene import Scene
@@ -37,7 +38,8 @@ class Mechanisms:
     `turns` (mechanisms, r, 3) [1/length] the rotation vectors of particles with orientations in them; `self_stresses`
     (s, b) [-] forces in the bars (tension +) that balance without loads, the largest part of each 1, and
     `beam_stresses` (s, beams, 6) in the beams: N, and Mt, My at both ends, Mz at both ends over the beam's length.
-    `pairs` (b, 2) are the particles of the bars.
+    `pairs` (b, 2) are the particles of the bars. `left_out` are the names of other forces that hold particles, such as
+    cloth and elastic supports: the counts are those without them.
     """
 
     bars: int
@@ -55,6 +57,7 @@ class Mechanisms:
     turns: Floats = field(default_factory=lambda: np.zeros((0, 0, 3)), repr=False)
     beam_stresses: Floats = field(default_factory=lambda: np.zeros((0, 0, 6)), repr=False)
     free_turns: int = 0
+    left_out: tuple[str, ...] = ()
 
     @property
     def kind(self) -> str:
@@ -75,6 +78,7 @@ class Mechanisms:
             f"mechanisms: {self.mechanisms}, rigid motions: {self.rigid_motions}{turns}",
             f"states of self-stress: {self.self_stress_states}",
             f"the net is {self.kind}",
+            *([f"counted without {', '.join(self.left_out)}"] if self.left_out else []),
         ]
 
     def to_dict(self) -> dict[str, Any]:
@@ -94,6 +98,7 @@ class Mechanisms:
         return {
             **{name: getattr(self, name) for name in counts},
             **{name: getattr(self, name).tolist() for name in arrays},
+            "left_out": list(self.left_out),
             "units": self.units.model_dump(),
         }
 
@@ -156,14 +161,31 @@ def mechanisms(model: Scene | Result) -> Mechanisms:
         moved[:, system.slots.first] / system.slots.lengths[:, None],
         stress[:, len(pairs) :].reshape(len(found), len(beams.ends), 6),
         turns.shape[1],
+        _others(system),
     )
+
+
+def _counted(group: Any) -> bool:
+    """Whether the elements of a group are bars."""
+    known = KINDS.get(group.cls.kind_name) is not None
+    return known and group.cls.central is not None and group.cls.role == "internal"
+
+
+def _others(system: Any) -> tuple[str, ...]:
+    """The names of forces that are neither loads nor bars nor beams, in the order of the scene."""
+    found = set[int]()
+    for group in system.groups:
+        if group.cls.role != "load" and group.cls is not Beam and not _counted(group):
+            found.update(part.number for part in group.parts if part.number >= 0)
+    forces = system.scene.forces
+    return tuple(forces[i].name or forces[i].kind_name for i in sorted(found))
 
 
 def _bars(system: Any) -> Ints:
     """Pairs of particles of all bars, in the order of the scene's forces."""
     found: list[tuple[int, Ints]] = []
     for group in system.groups:
-        if KINDS.get(group.cls.kind_name) is None or group.cls.central is None or group.cls.role != "internal":
+        if not _counted(group):
             continue
         found += [(part.number, group.block.indices[part.rows]) for part in group.parts]
     if not found:

@@ -44,7 +44,8 @@ class Options:
         list[str] | None, typer.Option(metavar="NAME", help="A load that grows, by name; may be repeated; default: all")
     ] = None
     case: Annotated[
-        str | None, typer.Option(metavar="NAME", help="Load case or combination whose loads grow, from the form")
+        str | None,
+        typer.Option(metavar="NAME", help="Load case or combination to analyse; its loads grow from the form"),
     ] = None
     increment: Annotated[float, typer.Option(help="Load factor of the first step of a path")] = 0.1
     report: Annotated[
@@ -59,7 +60,7 @@ def run(options: Options) -> int:
         target = outputs.place(options.report, options.source, ".analysis.json")
         outputs.check([target], (options.source, options.recipe))
         scene = scene_of(options.source, options.recipe)
-        found = {name: analyse(scene) for name, analyse in _chosen(options).items()}
+        found = {name: analyse(scene) for name, analyse in _chosen(options, scene).items()}
         if target is not None:
             from hookean.atomic_write import put
 
@@ -90,16 +91,18 @@ def scene_of(source: Path, recipe: Path | None) -> Scene:
     return read.scene
 
 
-def _chosen(options: Options) -> dict[str, Callable[[Scene], Any]]:
+def _chosen(options: Options, scene: Scene) -> dict[str, Callable[[Scene], Any]]:
     """The analyses that the options ask for, by the names of their sections."""
     import hookean
 
     loads, case = options.load, options.case
     plain = not (options.frequencies or options.buckling or options.load_path or options.mechanisms)
+    at_rest = plain or options.frequencies or options.mechanisms
+    shape = scene if case is None or not at_rest else hookean.load_cases(scene, [case]).cases[case].result
     chosen: dict[str, Callable[[Scene], Any]] = {}
     if options.frequencies or plain:
         masses = "self_weight" if options.weight_masses else None
-        chosen["frequencies"] = lambda scene: hookean.frequencies(scene, options.frequencies or 6, masses=masses)
+        chosen["frequencies"] = lambda _: hookean.frequencies(shape, options.frequencies or 6, masses=masses)
     if options.buckling:
         chosen["buckling"] = lambda scene: hookean.buckling(scene, options.buckling, loads=loads, case=case)
     if options.load_path:
@@ -107,7 +110,7 @@ def _chosen(options: Options) -> dict[str, Callable[[Scene], Any]]:
             scene, loads=loads, steps=options.load_path, increment=options.increment, case=case
         )
     if options.mechanisms or plain:
-        chosen["mechanisms"] = hookean.mechanisms
+        chosen["mechanisms"] = lambda _: hookean.mechanisms(shape)
     return chosen
 
 

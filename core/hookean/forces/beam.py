@@ -13,7 +13,11 @@ from hookean.compiled.marks import device
 from hookean.errors import InputError
 from hookean.forces.base import Block, Floats, Force, Places
 from hookean.forces.beam_element import (
+    ABOUT_T,
+    ABOUT_Y,
+    ABOUT_Z,
     ANGLES,
+    BALL,
     BEND_Y,
     CHORD,
     MOMENTS,
@@ -139,11 +143,12 @@ class Beam(Force):
     loads into several (a warning reports where much is missing).
 
     The section's axis x runs along the beam, z is in the plane of x and `normal`, and y = z cross x. Rows that are
-    straight without stress are bent in, and twisted in where the normals turn along the row. Turns
-    of particles whose beams are all hinged move nothing, and count as no mechanism. In motion a particle has an
-    isotropic inertia, that of a rod of its mass and of the mean length of the beams there. Sources:
-    Oran, "Tangent stiffness in space frames", 1973 (angles to the chord, and shortening); Bergou et al., "Discrete
-    elastic rods", 2008 (twist); Przemieniecki, Theory of matrix structural analysis, 1968, 5.6 (shear).
+    straight without stress are bent in, and twisted in where the normals turn along the row. A hinge about one axis, or
+    about all, may turn as far as it likes. Turns of particles whose beams are all hinged move nothing, and count as no
+    mechanism. In motion a particle has an isotropic inertia, that of a rod of its mass and of the mean length of the
+    beams there. Sources: Oran, "Tangent stiffness in space frames", 1973 (angles to the chord, and shortening); Bergou
+    et al., "Discrete elastic rods", 2008 (twist); Przemieniecki, Theory of matrix structural analysis, 1968, 5.6
+    (shear).
     """
 
     kind: Literal["beam"] = "beam"
@@ -223,6 +228,7 @@ class Beam(Force):
             normal=np.column_stack([start.reshape(-1, 9), end.reshape(-1, 9)]),
             offset_start=np.broadcast_to(self.offset_start, chords.shape),
             offset_end=np.broadcast_to(self.offset_end, chords.shape),
+            hinge=self._hinges(len(index)),
         )
 
     def _plane(self, axis: str, length: Floats) -> tuple[Floats, Floats]:
@@ -245,6 +251,15 @@ class Beam(Force):
     def hinged(self, axis: str, count: int) -> NDArray[np.bool_]:
         """Whether the start and the end of each of `count` beams (m, 2) are hinged about an axis."""
         return np.column_stack([named(ends, axis, count) for ends in (self.release_start, self.release_end)])
+
+    def _hinges(self, count: int) -> Floats:
+        """How both ends of `count` beams (m, 2) are hinged, as `beam_element` has it."""
+        x, y, z = (self.hinged(axis, count) for axis in "xyz")
+        ball = y & z & (x | x[:, ::-1])
+        lone = x & ~y & ~z
+        followed = ~(ball | (x & (y | z)))[:, ::-1]  # the section of the other end is that of the beam
+        lone &= followed & ~(lone[:, ::-1] & [False, True])
+        return np.select([ball, lone, y & ~z, z & ~y], [BALL, ABOUT_T, ABOUT_Y, ABOUT_Z])
 
     def measure(self, block: Block, x: Floats, element_forces: Floats) -> dict[str, Floats]:
         """Length of the chord, forces and moments of the section, and strain energy of each beam."""

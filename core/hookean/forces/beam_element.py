@@ -8,6 +8,10 @@ has the angles about y and z
 
 and the twist phi is the angle about e between both frames once they are turned to e that way. The same with complex
 numbers gives derivatives without cancellation (the complex step), and so the Hessian.
+
+The frame of an end that is hinged about its y or z alone is that of its particle, turned about this axis until t is as
+near to e as it can be; of one that is hinged about t alone, turned about t until there is no twist: so hinges may turn
+as far as they like. An end that is hinged about all axes has no angles.
 """
 
 from __future__ import annotations
@@ -19,9 +23,13 @@ import numpy as np
 from hookean.compiled.marks import device
 from hookean.forces.rotations import mapped, orientation, rotated
 
-ARM, LENGTH, AXIAL, TORSION, BEND_Y, BEND_Z, BOW_Y, BOW_Z, FRAME, OFFSET = 0, 2, 3, 4, 5, 8, 11, 14, 17, 35
+ARM, LENGTH, AXIAL, TORSION, BEND_Y, BEND_Z, BOW_Y, BOW_Z, FRAME, OFFSET, HINGE = 0, 2, 3, 4, 5, 8, 11, 14, 17, 35, 41
 """Columns of a beam's parameters: lengths of both slots, L, EA / L, GJ / L, bending stiffness aa ab bb about y and z,
-shortening aa ab bb about y and z, frames t y z of both ends at the start (18), eccentricities of both ends (6)."""
+shortening aa ab bb about y and z, frames t y z of both ends at the start (18), eccentricities of both ends (6), and how
+both ends are hinged:"""
+
+ABOUT_Y, ABOUT_Z, ABOUT_T, BALL = 1.0, 2.0, 3.0, 4.0
+"""about y or z of these two, about t alone, or about all; else 0."""
 
 E, CHORD, ANGLES, TWIST, NORMAL, MOMENTS, TORQUE, STRETCH, ROOM = 24, 27, 28, 32, 33, 34, 38, 39, 48
 """Places in `r`: frames (18) and eccentricities (6) as they are now, e, |chord|, theta_y theta_z of both ends, phi; and
@@ -44,7 +52,7 @@ def gradient(p: Any, c: Any, row: Any, r: Any, g: Any) -> None:
     """Write the gradient (12) to both ends and both slots of the strains times the forces in `r`."""
     for i in range(12):
         g[i] = 0.0
-    pull(r, g)
+    pull(c, row, r, g)
     px, py, pz = g[3], g[4], g[5]
     for end in range(2):
         sign, at = 2.0 * end - 1.0, 6 + 3 * end
@@ -76,13 +84,35 @@ def strains(p: Any, c: Any, row: Any, r: Any, q: Any, s: Any) -> Any:
     for i in range(3):
         r[E + i] /= chord
     for end in range(2):
-        along = r[E] * r[9 * end] + r[E + 1] * r[9 * end + 1] + r[E + 2] * r[9 * end + 2]
-        if not along.real > -0.999999:
+        hinge = c[row, HINGE + end]
+        if hinge in (ABOUT_Y, ABOUT_Z) and not folded(r, end, 3 if hinge == ABOUT_Z else 6):
             return False
-        g = steepness(along)[0]
-        r[ANGLES + 2 * end] = g * across(r, end, 6)
-        r[ANGLES + 2 * end + 1] = -g * across(r, end, 3)
-    return twist(r)
+        if hinge != BALL and not across(r, end, 0).real > -0.999999:
+            return False
+    if not twist(c, row, r):
+        return False
+    for end in range(2):
+        r[ANGLES + 2 * end], r[ANGLES + 2 * end + 1] = 0.0, 0.0
+        if c[row, HINGE + end] != BALL:
+            g = steepness(across(r, end, 0))[0]
+            r[ANGLES + 2 * end] = g * across(r, end, 6)
+            r[ANGLES + 2 * end + 1] = -g * across(r, end, 3)
+    return True
+
+
+@device
+def folded(r: Any, end: Any, axis: Any) -> Any:
+    """Turn t of an end and another axis of its frame, 3 y or 6 z, until t is nearest to the chord; False where the
+    chord is along the hinge."""
+    along, beside = across(r, end, 0), across(r, end, axis)
+    size = np.sqrt(along * along + beside * beside)
+    if not size.real > 1e-6:
+        return False
+    along, beside = along / size, beside / size
+    for i in range(9 * end, 9 * end + 3):
+        t, n = r[i], r[i + axis]
+        r[i], r[i + axis] = along * t + beside * n, along * n - beside * t
+    return True
 
 
 @device
@@ -110,8 +140,13 @@ def steepness(c: Any) -> Any:
 
 
 @device
-def twist(r: Any) -> Any:
-    """The angle phi about the chord between both frames, each turned to it the shortest way."""
+def twist(c: Any, row: Any, r: Any) -> Any:
+    """The angle phi about the chord between both frames, each turned to it the shortest way; none at a hinge, where the
+    frame of an end that is hinged about t alone turns with the other one."""
+    first, last = c[row, HINGE] == ABOUT_T, c[row, HINGE + 1] == ABOUT_T
+    r[TWIST] = 0.0
+    if c[row, TORSION] == 0.0 and not first and not last:
+        return True
     ua, ub = 1.0 / (1.0 + across(r, 0, 0)), 1.0 / (1.0 + across(r, 1, 0))
     ay, az, by = ua * across(r, 0, 3), ua * across(r, 0, 6), ub * across(r, 1, 3)
     sine, cosine = 0.0 * ua, 0.0 * ua
@@ -119,6 +154,17 @@ def twist(r: Any) -> Any:
         y = r[12 + i] - by * (r[E + i] + r[9 + i])
         cosine += y * (r[3 + i] - ay * (r[E + i] + r[i]))
         sine += y * (r[6 + i] - az * (r[E + i] + r[i]))
+    if first or last:
+        size = np.sqrt(sine * sine + cosine * cosine)
+        sine, cosine = sine / size, cosine / size
+        at = 3 if first else 12
+        for i in range(at, at + 3):
+            y, z = r[i], r[i + 3]
+            if first:
+                r[i], r[i + 3] = cosine * y + sine * z, cosine * z - sine * y
+            else:
+                r[i], r[i + 3] = cosine * y - sine * z, cosine * z + sine * y
+        return True
     if not cosine.real > -0.999999:
         return False
     r[TWIST] = 2.0 * np.arctan(sine / (1.0 + cosine))
@@ -167,27 +213,32 @@ def energy_of(c: Any, row: Any, r: Any) -> Any:
 
 
 @device
-def pull(r: Any, g: Any) -> None:
+def pull(c: Any, row: Any, r: Any, g: Any) -> None:
     """The gradient to both ends, and the moments about them (12): of the chord's length and of the angles."""
     ex, ey, ez = r[E], r[E + 1], r[E + 2]
-    qx, qy, qz = 0.0 * ex, 0.0 * ex, 0.0 * ex  # gradient to e
+    g[0], g[1], g[2] = 0.0 * ex, 0.0 * ex, 0.0 * ex  # gradient to e
+    torque = r[TORQUE]
     for end in range(2):
-        at, to = 9 * end, 6 + 3 * end
-        along, y, z = across(r, end, 0), across(r, end, 3), across(r, end, 6)
-        factor, slope = steepness(along)
-        my, mz = r[MOMENTS + 2 * end], r[MOMENTS + 2 * end + 1]
-        in_t, in_y, in_z = slope * (z * my - y * mz), -factor * mz, factor * my
-        ax = in_t * r[at] + in_y * r[at + 3] + in_z * r[at + 6]
-        ay = in_t * r[at + 1] + in_y * r[at + 4] + in_z * r[at + 7]
-        az = in_t * r[at + 2] + in_y * r[at + 5] + in_z * r[at + 8]
-        turn = (2.0 * end - 1.0) * r[TORQUE] / (1.0 + along)
+        if c[row, HINGE + end] != BALL:
+            bent(r, end, g)
+        if c[row, HINGE + end] == ABOUT_T:  # what turning the frame about t would work, the twist of the others does
+            at, to = 9 * end, 6 + 3 * end
+            torque += (1.0 - 2.0 * end) * (g[to] * r[at] + g[to + 1] * r[at + 1] + g[to + 2] * r[at + 2])
+    for end in range(2):
+        hinge, at, to = c[row, HINGE + end], 9 * end, 6 + 3 * end
+        if hinge == BALL:
+            continue
         tx, ty, tz = r[at], r[at + 1], r[at + 2]
-        qx += ax - turn * (ty * ez - tz * ey)
-        qy += ay - turn * (tz * ex - tx * ez)
-        qz += az - turn * (tx * ey - ty * ex)
-        g[to] = ay * ez - az * ey + turn * (ex + tx)
-        g[to + 1] = az * ex - ax * ez + turn * (ey + ty)
-        g[to + 2] = ax * ey - ay * ex + turn * (ez + tz)
+        turn = (2.0 * end - 1.0) * torque / (1.0 + across(r, end, 0))
+        g[0] -= turn * (ty * ez - tz * ey)
+        g[1] -= turn * (tz * ex - tx * ez)
+        g[2] -= turn * (tx * ey - ty * ex)
+        g[to] += turn * (ex + tx)
+        g[to + 1] += turn * (ey + ty)
+        g[to + 2] += turn * (ez + tz)
+        if hinge in (ABOUT_Y, ABOUT_Z):
+            hinged(r, end, hinge, g)
+    qx, qy, qz = g[0], g[1], g[2]
     along = qx * ex + qy * ey + qz * ez
     scale = 1.0 / r[CHORD]
     normal = r[NORMAL] - scale * along
@@ -195,6 +246,44 @@ def pull(r: Any, g: Any) -> None:
     g[4] = normal * ey + scale * qy
     g[5] = normal * ez + scale * qz
     g[0], g[1], g[2] = -g[3], -g[4], -g[5]
+
+
+@device
+def bent(r: Any, end: Any, g: Any) -> None:
+    """Add what the moments of an end's bending give to e, in the first rows of `g`, and to the frame of the end."""
+    at, to = 9 * end, 6 + 3 * end
+    ex, ey, ez = r[E], r[E + 1], r[E + 2]
+    along, y, z = across(r, end, 0), across(r, end, 3), across(r, end, 6)
+    factor, slope = steepness(along)
+    my, mz = r[MOMENTS + 2 * end], r[MOMENTS + 2 * end + 1]
+    in_t, in_y, in_z = slope * (z * my - y * mz), -factor * mz, factor * my
+    ax = in_t * r[at] + in_y * r[at + 3] + in_z * r[at + 6]
+    ay = in_t * r[at + 1] + in_y * r[at + 4] + in_z * r[at + 7]
+    az = in_t * r[at + 2] + in_y * r[at + 5] + in_z * r[at + 8]
+    g[0] += ax
+    g[1] += ay
+    g[2] += az
+    g[to] += ay * ez - az * ey
+    g[to + 1] += az * ex - ax * ez
+    g[to + 2] += ax * ey - ay * ex
+
+
+@device
+def hinged(r: Any, end: Any, hinge: Any, g: Any) -> None:
+    """Add what moves the frame of an end about its hinge: where the particle turns by w and the chord's direction by d,
+    by (d.n + w.(n x e)) / e.t about z, n = y, or by minus this about y, n = z."""
+    at, to = 9 * end, 6 + 3 * end
+    axis, other, sign = (6, 3, 1.0) if hinge == ABOUT_Z else (3, 6, -1.0)
+    work = g[to] * r[at + axis] + g[to + 1] * r[at + axis + 1] + g[to + 2] * r[at + axis + 2]
+    work *= sign / across(r, end, 0)
+    nx, ny, nz = r[at + other], r[at + other + 1], r[at + other + 2]
+    ex, ey, ez = r[E], r[E + 1], r[E + 2]
+    g[0] += work * nx
+    g[1] += work * ny
+    g[2] += work * nz
+    g[to] += work * (ny * ez - nz * ey)
+    g[to + 1] += work * (nz * ex - nx * ez)
+    g[to + 2] += work * (nx * ey - ny * ex)
 
 
 @device

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, ClassVar, Literal
 
 import numpy as np
-from pydantic import model_validator
+from pydantic import PrivateAttr, model_validator
 
 from hookean.errors import InputError
 from hookean.forces.base import Block, Floats, Force, Ints, OnFilm, Places
@@ -58,6 +58,19 @@ class SelfWeight(Force):
     on_film: ClassVar[OnFilm] = "spread"
     outputs: ClassVar[dict[str, str]] = {"force": "force"}
     kernel: ClassVar[Any] = staticmethod(unary_kernel)
+
+    _acting: float = PrivateAttr(default=1.0)
+
+    @property
+    def acting(self) -> float:
+        """The factor of a load case that is in its weight, and not in its mass [-]."""
+        return self._acting
+
+    def in_case(self, factor: float) -> SelfWeight:
+        """A copy whose weight, which has been multiplied by a factor, has it in `acting`."""
+        other = self.replaced()
+        other._acting = factor * self._acting  # type: ignore[misc]  # private, so not frozen
+        return other
 
     @model_validator(mode="after")
     def _one_way(self) -> SelfWeight:

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from hookean.system.system import System
 
 NOTHING = 1e-12  # part of the stiffness of the elements at a particle that counts as none against its turns
-PART = 1e-6  # of a moment along such an axis
+PART = 1e-6  # of the largest load, moments as forces M / l: what of a moment along such an axis is rounding
 
 
 def untaken_moment(system: System, state: State) -> str:
@@ -23,9 +23,9 @@ def untaken_moment(system: System, state: State) -> str:
     own, first = system.slots, system.slots.first
     if not len(own):
         return ""
-    loads = (system.evaluate(state, only="load")[0] * state.free)[first] * own.lengths[:, None]
-    size = lengths(loads)
-    if not size.any():
+    given = system.evaluate(state, only="load")[0] * state.free
+    loads, least = given[first] * own.lengths[:, None], PART * lengths(given).max() * own.lengths
+    if not loads.any():
         return ""
     stiffness, about = np.zeros((len(own), 3, 3)), np.zeros(len(own))
     for group, memory in zip(system.groups, state.memory, strict=True):
@@ -43,11 +43,11 @@ def untaken_moment(system: System, state: State) -> str:
     loose = np.abs(values) <= NOTHING * about[:, None]
     parts = np.einsum("rij,ri->rj", axes, loads) * loose
     left = np.einsum("rij,rj->ri", axes, parts)
-    lost = np.flatnonzero(lengths(left) > PART * size.max())
+    lost = np.flatnonzero(lengths(left) > least)
     if not len(lost):
         return ""
     moment, unit = left[lost[0]], system.scene.units.of("moment")
-    said = ", ".join(f"{c:.3g}" for c in np.where(np.abs(moment) > PART * size.max(), moment, 0.0))
+    said = ", ".join(f"{c:.3g}" for c in np.where(np.abs(moment) > least[lost[0]], moment, 0.0))
     more = f" (and {len(lost) - 1} more)" if len(lost) > 1 else ""
     return (
         f"Nothing takes the moment ({said}) {unit} on particle {own.particles[lost[0]]}{more}: all beams there are "

@@ -12,9 +12,12 @@ from numpy.typing import NDArray
 from hookean.analysis.freezing import Frozen, freeze
 from hookean.errors import InputError
 from hookean.forces import Block, groups
+from hookean.forces.anchor_spring import AnchorSpring
 from hookean.forces.base import lengths
+from hookean.forces.beam import Beam
 from hookean.forces.sliding_cable import REST, K, SlidingCable
 from hookean.forces.springs import Springs
+from hookean.forces.support import Support
 from hookean.scene.scene import Scene
 from hookean.system.state import State
 from hookean.system.system import System
@@ -85,9 +88,10 @@ class Cables:
 def cables(model: Scene | Frozen, *, stretch: float = 0.0, fitting: float = 0.0) -> Cables:
     """Unstressed lengths of the cables of a form, compensated for the workshop.
 
-    Elements of one force that continue each other, straight on where several meet, are a cable; at a support where they
-    turn by 45 degrees or more it ends. Its unstressed length is the sum of l EA / (EA + T); cut it to unstressed
-    length / (1 + stretch) - 2 fitting. A sliding cable continues over its saddles; its unstressed length is its own.
+    Elements of one force that continue each other, straight on where several meet, are a cable; where they turn by 45
+    degrees or more at a support, a beam or an element in compression, such as a mast, it ends. Its unstressed length is
+    the sum of l EA / (EA + T); cut it to unstressed length / (1 + stretch) - 2 fitting. A sliding cable continues over
+    its saddles; its unstressed length is its own.
 
     - `model`: A scene whose form is found and frozen (see `freeze`), or a frozen one.
     - `stretch`: The construction stretch of new rope, which stays after its first loading [-].
@@ -115,7 +119,7 @@ def cables(model: Scene | Frozen, *, stretch: float = 0.0, fitting: float = 0.0)
 def _lines(frozen: Frozen, system: System, state: State) -> Iterator[tuple[str, Ints, Floats, Floats, Floats]]:
     """Of each cable the name of its force, the particles along it, and of its elements the length, tension and
     unstressed length."""
-    held = np.flatnonzero((state.free == 0.0).all(axis=1))
+    held = _carrying(frozen, system, state)
     for group in system.groups:
         for part in group.parts:
             name, number, pairs = part.force.name or part.force.kind_name, part.number, group.block.indices[part.rows]
@@ -128,6 +132,18 @@ def _lines(frozen: Frozen, system: System, state: State) -> Iterator[tuple[str, 
                 known = None if frozen.form is None else frozen.form.forces[number]["force"]
                 for particles, length, tension, rest in _sliding(group.of(part), state.x, known):
                     yield name, particles, length, tension, rest
+
+
+def _carrying(frozen: Frozen, system: System, state: State) -> Ints:
+    """The particles that are held, also elastically, or at which beams or elements in compression end."""
+    found = [np.flatnonzero((state.free[: system.slots.count] == 0.0).all(axis=1))]
+    for group in system.groups:
+        if group.cls in (AnchorSpring, Beam, Support):
+            found.append(group.block.indices[:, : group.cls.arity].ravel())
+        for part in group.parts:
+            if part.number in frozen.tensions:
+                found.append(group.block.indices[part.rows][frozen.tensions[part.number] < 0.0].ravel())
+    return np.unique(np.concatenate(found))
 
 
 def _sliding(block: Block, x: Floats, known: Floats | None) -> Iterator[tuple[Ints, Floats, Floats, Floats]]:
@@ -152,7 +168,8 @@ def chains(x: Floats, pairs: Ints, held: Ints | None = None) -> list[tuple[Ints,
     """Elements (m, 2) that continue each other: of each chain the rows (k,) in order, and its particles (k + 1,).
 
     At a particle the two elements that are most nearly in line continue each other, if they turn by less than 45
-    degrees, then the next two; two that are alone there always do, but for a particle that is `held`, such as a mast.
+    degrees, then the next two; two that are alone there always do, but for a particle that is `held`, such as that of a
+    mast.
     """
     corners = set() if held is None else set(held.tolist())
     at: dict[int, list[int]] = {}

@@ -104,10 +104,10 @@ ANALYSES: dict[str, Analysis] = {
     "frequencies": Analysis(
         hookean.frequencies, Frequencies, ("frequencies", "modes", "effective_masses", "units", "notes")
     ),
-    "buckling": Analysis(hookean.buckling, Buckling, ("factors", "modes", "particles", "loads", "units")),
+    "buckling": Analysis(hookean.buckling, Buckling, ("factors", "modes", "particles", "loads", "units", "notes")),
     "load-path": Analysis(hookean.load_path, LoadPath, ("factors", "particles", "stable", "critical_points", "units")),
     "mechanisms": Analysis(
-        hookean.mechanisms, Nothing, ("mechanisms", "free_turns", "self_stress_states", "modes", "units")
+        hookean.mechanisms, Nothing, ("mechanisms", "free_turns", "self_stress_states", "modes", "left_out", "units")
     ),
     "patterns": Analysis(hookean.cutting_patterns, Patterns, ("strips", "seams", "compensation", "table", "units")),
     "cables": Analysis(hookean.cables, Cables, ("cables", "table", "units")),

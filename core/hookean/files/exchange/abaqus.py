@@ -39,8 +39,7 @@ def write(structure: Structure, target: Path) -> None:
     if not (groups or structure.beams or structure.sheets):
         said = "the result has neither beams nor membranes nor springs with a rest length to write"
         raise InputError(target.name, f"{said}; freeze the form first")
-    started = bool(structure.beams) or any(sheet.bends for sheet in structure.sheets)
-    points = structure.start if started else structure.points
+    points = structure.start if structure.started else structure.points
     beams = BeamPart(structure.beams, points)
     held = np.flatnonzero((structure.held | structure.clamped).any(axis=1))
     named = [*(g.name for g in groups), *(b.name for b in structure.beams), *(s.name for s in structure.sheets)]
@@ -63,7 +62,7 @@ def write(structure: Structure, target: Path) -> None:
     kept += [*trusses.lines(), *beams.lines(1 + len(trusses.which)), *cloth.lines(), *materials.lines()]
     stress = [*trusses.stress(points), *cloth.stress()]
     kept += ["*INITIAL CONDITIONS, TYPE=STRESS", *stress] if stress else []
-    kept += _step(structure, held, started)
+    kept += _step(structure, held)
     put(target, ("\n".join(kept) + "\n").encode(), lambda back: None)
 
 
@@ -131,7 +130,7 @@ def _springs(elastic: Floats, first: int) -> list[str]:
     return lines
 
 
-def _step(structure: Structure, held: Any, started: bool) -> list[str]:
+def _step(structure: Structure, held: Any) -> list[str]:
     """Supports, and a step with the loads; where points are those of the result, also with what elastic supports carry
     there, from where their springs count."""
     lines = ["*BOUNDARY"] if len(held) else []
@@ -140,7 +139,7 @@ def _step(structure: Structure, held: Any, started: bool) -> list[str]:
         lines += [f"{particle + 1}, {axis + 1}, {axis + 1}" for axis in range(6) if fixed[particle, axis]]
     lines += ["*STEP, NLGEOM=YES", "*STATIC"]
     acting = np.column_stack([structure.loads, structure.moments])
-    if not started:
+    if not structure.started:
         carried = np.column_stack([structure.reactions, structure.reaction_moments])
         acting = acting + np.where((structure.elastic > 0.0) & ~fixed, carried, 0.0)
     loaded = np.argwhere(acting != 0.0).tolist()

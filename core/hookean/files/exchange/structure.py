@@ -137,6 +137,11 @@ class Structure:
         return np.flatnonzero((self.held | self.clamped).any(axis=1) | self.elastic.any(axis=1))
 
     @property
+    def started(self) -> bool:
+        """Whether Abaqus files have the points of the start, where beams and shells lie without stress."""
+        return bool(self.beams) or any(sheet.bends for sheet in self.sheets)
+
+    @property
     def start(self) -> Floats:
         """Where the points were at the start (n, 3) [length]."""
         return self.points - self.displacements
