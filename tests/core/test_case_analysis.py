@@ -131,3 +131,16 @@ def test_factors_on_a_weight_are_no_masses(weight: dict[str, Any]) -> None:
     for case in hookean.load_cases(scene).cases.values():
         found = hookean.frequencies(case.result, 1, masses="self_weight")
         assert found.angular_frequencies[0] == pytest.approx(square**0.5, rel=1e-9)
+
+
+def test_frequencies_and_mechanisms_of_a_case_are_those_of_its_result() -> None:
+    """By its name, the bits of its result; a result has its loads already."""
+    scene = column()
+    shape = hookean.load_cases(scene, ["ULS"]).cases["ULS"].result
+    assert (hookean.frequencies(scene, case="ULS").frequencies == hookean.frequencies(shape).frequencies).all()
+    assert (hookean.frequencies(scene).frequencies != hookean.frequencies(shape).frequencies).any()
+    assert hookean.mechanisms(scene, case="ULS").to_dict() == hookean.mechanisms(shape).to_dict()
+    with pytest.raises(InputError, match="case: 'ULS' given with a Result, which has its loads; give the scene"):
+        hookean.frequencies(shape, case="ULS")
+    with pytest.raises(InputError, match="case: 'snow' is not a load case or combination; the scene has P, Q, ULS"):
+        hookean.mechanisms(scene, case="snow")

@@ -73,7 +73,7 @@ def test_masses_of_a_request_are_those_of_the_function(client: httpx.Client) -> 
 
 
 def test_a_case_of_a_request_is_that_of_the_function(client: httpx.Client) -> None:
-    """Buckling of a combination, of a column whose loads are in cases; its name has a place in the request."""
+    """Analyses of a combination, of a column whose loads are in cases; its name has a place in the request."""
     column = {
         "particles": [[0, 0, 0], [0, 0, 1], [0, 0, 2]],
         "forces": [
@@ -91,6 +91,12 @@ def test_a_case_of_a_request_is_that_of_the_function(client: httpx.Client) -> No
     for change, pointer in (({"case": "snow"}, "/case"), ({}, "/loads")):
         answer = client.post("/v1/analysis/buckling", json={"scene": column, **change})
         assert problem(answer, 422, "invalid-input")["errors"][0]["pointer"] == pointer
+    for name in ("frequencies", "mechanisms"):
+        one = client.post(f"/v1/analysis/{name}", json={"scene": column, "case": "ULS"}).json()
+        wanted = ANALYSES[name].function(hookean.Scene.read(column), case="ULS").to_dict()
+        assert one == json.loads(json.dumps(wanted))
+        answer = client.post(f"/v1/analysis/{name}", json={"scene": column, "case": "snow"})
+        assert problem(answer, 422, "invalid-input")["errors"][0]["pointer"] == "/case"
 
 
 def test_load_cases_are_those_of_the_function(client: httpx.Client) -> None:

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.analysis.at_rest import AtRest
+from hookean.analysis.load_cases import of_case
 from hookean.analysis.matrices import Unknowns, against_turns, condensed, factor, largest_row
 from hookean.analysis.one_way import between
 from hookean.errors import InputError
@@ -27,7 +28,7 @@ WEIGHED = SelfWeight.kind_name  # masses of the self-weight
 UNIT_MASSES = f'every particle has the mass 1, the default; for a real structure give masses, or masses "{WEIGHED}"'
 OF_FORM = (
     "these are frequencies of the form, whose films and lines of constant tension are not elastic; for those of the"
-    " frozen model pass the result of a load case"
+    " frozen model name a load case, case='...'"
 )
 
 
@@ -82,7 +83,9 @@ class Frequencies:
         }
 
 
-def frequencies(model: Scene | Result | Simulation, count: int = 6, *, masses: Any = None) -> Frequencies:
+def frequencies(
+    model: Scene | Result | Simulation, count: int = 6, *, masses: Any = None, case: str | None = None
+) -> Frequencies:
     """The lowest natural frequencies and modes of an equilibrium: K phi = omega^2 M phi.
 
     K is the exact tangent stiffness of the shape, with the stress that it carries; M the lumped masses of the
@@ -93,14 +96,16 @@ def frequencies(model: Scene | Result | Simulation, count: int = 6, *, masses: A
     - `masses`: Masses (n,) of the particles, or one for all [force time^2/length]; "self_weight": those of the
       `self_weight` forces that act, their weight over g without the factors of a load case; default: those of the
       scene, 1 unless given.
+    - `case`: A load case or combination of the scene, in which it is frozen; default: none.
 
-    Raises InputError for a shape that is not at rest, a force without a tangent, or masses that are not positive.
+    Raises InputError for a shape that is not at rest, an unknown case, a force without a tangent, or masses that are
+    not positive.
     Source: Clough and Penzien, Dynamics of Structures, 1993, chapters 11 to 13; Ericsson and Ruhe, The spectral
     transformation Lanczos method, 1980.
     """
     if not (isinstance(count, int) and 1 <= count <= MOST):
         raise InputError("count", f"{count!r} given; a whole number from 1 to {MOST} is expected")
-    rest = AtRest.of(model)
+    rest = AtRest.of(of_case(model, case))
     mass = _masses(rest, masses)
     unknowns = Unknowns.of(rest.system, rest.state, rest.free)
     tangent = unknowns.tangent(rest.system, rest.state)

@@ -142,6 +142,15 @@ def load_cases(
     return LoadCases(frozen, dict(zip(chosen, found, strict=True)))
 
 
+def of_case(model: Any, case: str | None) -> Any:
+    """A scene in equilibrium in one of its load cases or combinations, a result; without a case what is given."""
+    if case is None:
+        return model
+    if not isinstance(model, Scene):
+        raise InputError("case", f"{case!r} given with a {type(model).__name__}, which has its loads; give the scene")
+    return load_cases(model, wanted(model, [case], "case")).cases[case].result
+
+
 def wanted(scene: Scene, names: Sequence[str] | None, pointer: str = "cases") -> list[str]:
     """The names of all load cases and combinations of a scene, or those given, at `pointer`; InputError if the scene
     has none."""

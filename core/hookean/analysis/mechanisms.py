@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hookean.analysis.beam_strains import BeamPlaces, beam_columns, beam_places
+from hookean.analysis.load_cases import of_case
 from hookean.errors import InputError
 from hookean.forces import KINDS
 from hookean.forces.beam import Beam
@@ -103,17 +104,19 @@ class Mechanisms:
         }
 
 
-def mechanisms(model: Scene | Result) -> Mechanisms:
+def mechanisms(model: Scene | Result, *, case: str | None = None) -> Mechanisms:
     """Count the mechanisms and the states of self-stress of bars and beams, by the rank of their equilibrium matrix.
 
     Every element of two particles that acts along the line between them is a bar, in tension or compression, whatever
     its stiffness; beams have six forces each, less those that are released. Forces of other kinds are left out. The
-    shape is that of a result, or the start of a scene.
+    shape is that of a result, the start of a scene, or with `case` that of a load case or combination of the scene.
 
-    Raises InputError where there are neither, one has zero length, or there are too many for dense matrices.
+    Raises InputError for an unknown case, and where there are neither, one has zero length, or there are too many for
+    dense matrices.
     Source: Calladine, Buckminster Fuller's "tensegrity" structures and Clerk Maxwell's rules, 1978; Pellegrino and
     Calladine, Matrix analysis of statically and kinematically indeterminate frameworks, 1986.
     """
+    model = of_case(model, case)
     scene = model.scene if isinstance(model, Result) else model
     if not isinstance(scene, Scene):
         raise InputError("model", f"a Scene or Result is expected, not a {type(model).__name__}")

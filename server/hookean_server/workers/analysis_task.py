@@ -32,13 +32,23 @@ class Modes(Model):
     count: int = Field(default=6, ge=1, le=200, description="How many modes")
 
 
+CASE = "Load case or combination of which the shape is, frozen; null: none"
+
+
 class Frequencies(Modes):
-    """How many modes, of which masses."""
+    """How many modes, of which masses and load case."""
 
     masses: float | tuple[float, ...] | Literal["self_weight"] | None = Field(
         default=None,
         description="Mass of all or of each particle [mass], or that of its self_weight; null: those of the scene",
     )
+    case: str | None = Field(default=None, description=CASE)
+
+
+class Mechanisms(Model):
+    """Of which load case."""
+
+    case: str | None = Field(default=None, description=CASE)
 
 
 class Buckling(Modes):
@@ -76,10 +86,6 @@ class Cables(Model):
     fitting: float = Field(default=0.0, ge=0, description="Length of a fitting at each end [length]")
 
 
-class Nothing(Model):
-    """No options."""
-
-
 @dataclass(frozen=True)
 class Analysis:
     """One analysis: its function, its options beside the scene, and the fields of its answer."""
@@ -107,7 +113,7 @@ ANALYSES: dict[str, Analysis] = {
     "buckling": Analysis(hookean.buckling, Buckling, ("factors", "modes", "particles", "loads", "units", "notes")),
     "load-path": Analysis(hookean.load_path, LoadPath, ("factors", "particles", "stable", "critical_points", "units")),
     "mechanisms": Analysis(
-        hookean.mechanisms, Nothing, ("mechanisms", "free_turns", "self_stress_states", "modes", "left_out", "units")
+        hookean.mechanisms, Mechanisms, ("mechanisms", "free_turns", "self_stress_states", "modes", "left_out", "units")
     ),
     "patterns": Analysis(hookean.cutting_patterns, Patterns, ("strips", "seams", "compensation", "table", "units")),
     "cables": Analysis(hookean.cables, Cables, ("cables", "table", "units")),
