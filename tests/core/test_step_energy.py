@@ -318,3 +318,27 @@ def test_spheres_do_not_pass_through_what_can_stop_them(speed: float, part: floa
     x, v = simulation.state.x, simulation.state.v
     assert x[0, 0] < x[1, 0] and v[0, 0] < 0.0 < v[1, 0]
     assert 0.5 * float((v**2).sum()) == pytest.approx(speed**2, rel=0.25)
+
+
+@pytest.mark.parametrize(("step", "warned"), [(0.01, True), (0.001, False)])
+def test_a_given_step_that_is_too_long_for_a_contact_is_warned_of_before_it(step: float, warned: bool) -> None:
+    """A free pair with a contact k = 1e6 N/m between 1 kg and 1 kg is stable up to 2 / sqrt(2 k / m) = 0.0014 s; the
+    steps that the warning names are below that."""
+    simulation = Simulation(
+        Scene.read(
+            {
+                "particles": [[-1, 0, 0], [1, 0, 0]],
+                "velocities": [[20, 0, 0], [-20, 0, 0]],
+                "forces": [{"kind": "collide", "particles": [0, 1], "radius": 0.1, "strength": 1e6}],
+                "settings": {"solver": "verlet", "time_step": step},
+            }
+        )
+    )
+    warnings = simulation.result().report.warnings
+    assert len(warnings) == warned
+    for warning in warnings:
+        assert "is too large for this mass and the stiffness of /forces/0, collide" in warning
+        named = [
+            float(number) for number in re.findall(r"([\d.e-]+) s are stable in most motions, ([\d.e-]+) s", warning)[0]
+        ]
+        assert 0.0 < named[0] < named[1] <= 2.0 / np.sqrt(2e6)
