@@ -66,6 +66,21 @@ def referred(kind: str, one: UUID) -> Chunk:
     return item
 
 
+@pytest.mark.parametrize("where", ["parameter", "input"])
+def test_an_expression_gets_a_panel_s_text_as_the_kind_of_its_input(where: str) -> None:
+    """Grasshopper casts what comes in to the kind of the input first: x * 2 of the text 25 is 50 for a number."""
+    d = Definition("text", "Text", "A number written in a panel, with an expression on what takes it.")
+    if where == "parameter":
+        taking = d.parameter("Number", "Num", source=d.text("K", "25"))
+        port = taking.container
+    else:
+        taking = d.native("Series", start=d.text("K", "25"), step=1, count=1)
+        port = inputs(taking.container)[0]
+    port.put("InternalExpression", Type.STRING, "x * 2")
+    d.panel("at", taking)
+    assert near(found(d, "at"), [50])
+
+
 def test_points_that_refer_to_a_rhino_file_are_taken_from_it(tmp_path: Path) -> None:
     file, ids = rails(tmp_path)
     held = stored(referred("point_object", ids[2]))

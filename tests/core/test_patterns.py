@@ -106,6 +106,13 @@ def test_the_gores_of_a_sphere_have_their_closed_form() -> None:
     assert max(abs(a - b) for a, b in found.seams.values()) < 1e-9
 
 
+def test_a_seam_over_a_triangle_with_two_corners_at_one_place_is_refused() -> None:
+    """The edge there has no direction."""
+    mesh = grid(np.linspace(0, 2, 5), np.linspace(0, 2, 5), lambda a, z: [a * 0.0, z * 0.0, 0.0])
+    with pytest.raises(InputError, match="at one place; weld the mesh first"):
+        geodesic(mesh, 0, 13)
+
+
 @pytest.mark.parametrize(
     ("start", "end"), [((0, 0), (12, 7)), ((0, 3), (12, 5)), ((0, 0), (5, 3)), ((12, 7), (2, 0)), ((0, 0), (0, 7))]
 )

@@ -38,6 +38,12 @@ def refused(given: dict[str, Any]) -> str:
         ({"weld_tolerance": True}, "/weld_tolerance: true given; a number expected"),
         ({"strict": "no"}, "/strict: a text given; true or false expected"),
         ({"strict": 0}, "/strict: 0 given; true or false expected"),
+        ({"strict": 10**5000}, "/strict: a number given; true or false expected"),
+        (
+            {"units": 10**5000},
+            "/units: a number of more than 80 digits given; an object of names and values expected",
+        ),
+        ({"settings": {"floor": {"point": []}}}, "/settings/floor/point: shape [0] given; x, y, z expected"),
     ],
 )
 def test_a_value_of_another_type_is_not_converted(fields: dict[str, Any], said: str) -> None:

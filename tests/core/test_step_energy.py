@@ -14,6 +14,7 @@ import pytest
 
 from hookean import Scene, Simulation, Status
 from hookean.discretize import edges, grid
+from hookean.stability import time_steps
 from hookean.stability.time_steps import MOST_PARTS, most_parts
 from serving import SOAK
 
@@ -261,3 +262,83 @@ def test_a_shell_that_collapses_does_not_diverge_by_default():
     for _ in range(8):
         assert simulation.step() is Status.RUNNING, simulation.message
         assert sum(energies(spec, simulation)) < 3.0 * start
+
+
+def test_a_gas_whose_steps_were_divided_is_not_at_rest(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Sixty undamped spheres at 10 m/s in a closed box. The first steps are made too long for their contacts: the run
+    goes back and divides them, and the forces of the burst are no measure of rest. The kinetic energy is never far
+    below that of the start, the sum of m v^2 / 2, and what the steps have added is reported (a tenth is)."""
+    monkeypatch.setattr(time_steps, "contact_step", lambda *_: np.inf)
+    rng, axis = np.random.default_rng(3), np.linspace(-0.8, 0.8, 4)
+    x = np.array([[a, b, c] for a in axis for b in axis for c in axis])[:60]
+    box = np.array([[a, b, c] for a in (-1.0, 1.0) for b in (-1.0, 1.0) for c in (-1.0, 1.0)])
+    faces = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    crowd = {"particles": list(range(60)), "radius": 0.1, "strength": 1e6}
+    walls = {"kind": "collide_solid", "vertices": box, "faces": faces, "inside": True, **crowd}
+    velocities = 10.0 * rng.normal(size=x.shape)
+    simulation = Simulation(
+        Scene.read(
+            {
+                "particles": x,
+                "velocities": velocities,
+                "forces": [{"kind": "collide", **crowd}, walls],
+                "settings": {"solver": "verlet", "drag": 0.0, "sub_iterations": 5},
+            }
+        )
+    )
+    start = 0.5 * float((velocities**2).sum())
+    for _ in range(3):
+        assert simulation.step() is Status.RUNNING, simulation.message
+        moving = 0.5 * float((simulation.state.v**2).sum())
+        assert moving > 0.5 * start
+    total = simulation.result().energy["total"]
+    assert (total > 1.1 * start) <= ("to the energy of this motion" in simulation.message)
+
+
+@pytest.mark.parametrize("part", [0.3, 0.9])
+@pytest.mark.parametrize("speed", [1.0, 10.0, 100.0, 1000.0])
+def test_spheres_do_not_pass_through_what_can_stop_them(speed: float, part: float) -> None:
+    """Two of 1 kg that fly at each other, apart at first; to pass they need k (2 r)^2 / 2, of which they have a part.
+    Steps of 0.01 s would move them past each other at 100 m/s. They come back, and gain or lose at most a quarter of
+    their energy: one contact at omega dt <= 1 begins and ends within a step, (omega dt)^2 / 4 of it."""
+    radius = 0.1
+    stiffness = 2.0 * speed**2 / part / (2.0 * radius) ** 2  # k (2 r)^2 / 2 = 2 (m v^2 / 2) / part
+    simulation = Simulation(
+        Scene.read(
+            {
+                "particles": [[-1, 0, 0], [1, 0, 0]],
+                "velocities": [[speed, 0, 0], [-speed, 0, 0]],
+                "forces": [{"kind": "collide", "particles": [0, 1], "radius": radius, "strength": stiffness}],
+                "settings": {"solver": "verlet", "drag": 0.0, "sub_iterations": 1},
+            }
+        )
+    )
+    while simulation.state.time < 4.0 / speed:
+        assert simulation.step() is Status.RUNNING, simulation.message
+    x, v = simulation.state.x, simulation.state.v
+    assert x[0, 0] < x[1, 0] and v[0, 0] < 0.0 < v[1, 0]
+    assert 0.5 * float((v**2).sum()) == pytest.approx(speed**2, rel=0.25)
+
+
+@pytest.mark.parametrize(("step", "warned"), [(0.01, True), (0.001, False)])
+def test_a_given_step_that_is_too_long_for_a_contact_is_warned_of_before_it(step: float, warned: bool) -> None:
+    """A free pair with a contact k = 1e6 N/m between 1 kg and 1 kg is stable up to 2 / sqrt(2 k / m) = 0.0014 s; the
+    steps that the warning names are below that."""
+    simulation = Simulation(
+        Scene.read(
+            {
+                "particles": [[-1, 0, 0], [1, 0, 0]],
+                "velocities": [[20, 0, 0], [-20, 0, 0]],
+                "forces": [{"kind": "collide", "particles": [0, 1], "radius": 0.1, "strength": 1e6}],
+                "settings": {"solver": "verlet", "time_step": step},
+            }
+        )
+    )
+    warnings = simulation.result().report.warnings
+    assert len(warnings) == warned
+    for warning in warnings:
+        assert "is too large for this mass and the stiffness of /forces/0, collide" in warning
+        named = [
+            float(number) for number in re.findall(r"([\d.e-]+) s are stable in most motions, ([\d.e-]+) s", warning)[0]
+        ]
+        assert 0.0 < named[0] < named[1] <= 2.0 / np.sqrt(2e6)

@@ -84,15 +84,19 @@ def test_a_cube_of_quads_has_its_volume() -> None:
         (lambda faces: faces[1:], "the mesh is not closed at the edge of particles"),
         (
             lambda faces: faces[:, ::-1],
-            "a volume of -17.4536 is enclosed; more than 0 is needed: turn its faces outwards",
+            r"a volume of -17.4536 m\^3 is enclosed; more than 0 is needed: turn its faces outwards",
         ),
         (lambda faces: np.concatenate([faces, faces]), "the mesh is not closed at the edge of particles"),
         (lambda faces: faces[:0], "the mesh has no faces; give a closed mesh"),
+        (
+            lambda faces: np.concatenate([faces[:1], faces[:1, ::-1]]),
+            r"a volume of \S+ m\^3 is enclosed; more than 0 is needed: give a mesh that is not flat",
+        ),
     ],
 )
 @pytest.mark.parametrize("kind", ["volume", "gas"])
 def test_meshes_that_enclose_nothing_are_refused(kind: str, change: Any, message: str) -> None:
-    """Open, inside out, with faces twice, without faces."""
+    """Open, inside out, with faces twice, without faces, flat."""
     x, faces = icosahedron()
     meshes = {"skin": {"vertices": x, "faces": change(faces)}}
     with pytest.raises(InputError, match=f"/meshes/skin/faces: {message}"):

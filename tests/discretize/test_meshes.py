@@ -238,3 +238,21 @@ def test_import_loads_no_heavy_package() -> None:
     assert all(callable(getattr(hd, name)) for name in hd.__all__)
     with pytest.raises(AttributeError):
         _ = hd.nothing_of_this_name
+
+
+@pytest.mark.parametrize(
+    ("x", "faces", "pointer", "message"),
+    [
+        (1.0, [[0, 1, 2, 3], [0.5, 1, 2]], "mesh/faces/1", "not a list of whole numbers"),
+        (1e80, [[0, 1, 2, 3]], "mesh/vertices/1", "beyond 1e.70; use larger units"),
+    ],
+)
+def test_a_mesh_without_whole_numbers_or_with_coordinates_that_overflow_is_refused(
+    x: float, faces: Any, pointer: str, message: str
+) -> None:
+    """A corner 0.5 is no vertex; the area of a mesh of 1e80 has a square of a square that no float64 holds."""
+    with pytest.raises(InputError, match=message) as error:
+        hd.area(([[0, 0, 0], [x, 0, 0], [x, x, 0], [0, x, 0]], faces))
+    assert error.value.faults[0].pointer == pointer
+    whole = hd.as_mesh(([[0, 0, 0], [1, 0, 0], [1, 1, 0]], np.array([[0.0, 1.0, 2.0]])))
+    assert whole.faces.tolist() == [[0, 1, 2, 2]]

@@ -262,3 +262,11 @@ def test_a_net_that_nothing_balances_has_no_figure() -> None:
     x[3] = [9, 1, 0]
     with pytest.raises(InputError, match="is not flat"):
         reciprocal_diagram(Mesh(x + np.array([[0, 0, 0], [0, 0, 0], [0, 0, 0], [0, 0, 1.0]]), np.array(faces)))
+
+
+@pytest.mark.parametrize(("scale", "away"), [(1.0, 1e15), (1e100, 0.0)])
+def test_pipes_that_rounding_would_bend_are_refused(scale: float, away: float) -> None:
+    """Float64 rounds coordinates of 1e15 to 1/8, more than a radius of 0.05; squares of squares of 1e100 overflow."""
+    lines = np.array([[[0, 0, 0], [1, 0, 0]], [[0, 0, 0], [0, 1, 0]], [[0, 0, 0], [0, 0, 1.0]]]) * scale + away
+    with pytest.raises(InputError, match="too large for float64 beside a radius"):
+        pipes(lines, 0.05 * scale)

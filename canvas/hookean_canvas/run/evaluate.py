@@ -11,8 +11,9 @@ input called on of an Engine is True. Settings keep both from it.
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from typing import Any
 from uuid import UUID
 
@@ -190,8 +191,9 @@ class Canvas:
         else:
             self._script(node, self._scripts[node.id])
 
-    def _given(self, node: Node, port: Port) -> Tree:
-        """The data that reaches an input, by wires or its own, after its modifiers."""
+    def _given(self, node: Node, port: Port, cast: Callable[[Any], Any] | None = None) -> Tree:
+        """The data that reaches an input, by wires or its own, after its modifiers; an expression on it gets values of
+        the kind that the input has (`cast`), as a number of a panel's text."""
         found = Tree()
         for source in port.sources:
             found.take(self._results.get(source, Tree()))
@@ -199,7 +201,7 @@ class Canvas:
             found.take(port.data)
         found = modified(found, port.mapping, port.reverse, port.simplify)
         if port.expression:
-            found = self._expressed(node, port, found)
+            found = self._expressed(node, port, found if cast is None else self._converted(node, port, found, cast))
         if port.degrees:
             found = self._converted(node, port, found, radians)
         return found.each(over_unit_domain) if port.unit else found
@@ -216,10 +218,11 @@ class Canvas:
         if value is not None or (not port.sources and node.guid in OWN):
             own = Tree.of([value] if value is not None else OWN[node.guid](node))
             return self._expressed(node, port, own) if port.expression else own
-        found = self._given(node, port)
-        if node.guid == GRAPH_MAPPER and (mapped := mapper_of(node)) is not None:
+        mapped = mapper_of(node) if node.guid == GRAPH_MAPPER else None
+        kind = kind_of(node.guid, "" if node.plugin else node.name) if mapped is None else "number"
+        found = self._given(node, port, None if kind is None else partial(as_kind, kind))
+        if mapped is not None:
             return self._cast(node, port, "number", found).each(lambda x: None if x is None else mapped(x))
-        kind = kind_of(node.guid, "" if node.plugin else node.name)
         return found if kind is None else self._cast(node, port, kind, found)
 
     def _native(self, node: Node, native: Native) -> None:
@@ -233,7 +236,7 @@ class Canvas:
             say("warning", text)
         given: list[tuple[Input, Tree]] = []
         for port, of in inputs_of(node, native) or []:
-            held = Tree.of(of.default) if port is None else self._given(node, port)
+            held = Tree.of(of.default) if port is None else self._given(node, port, partial(as_kind, of.kind))
             tree = self._cast(node, port or node.inputs[0], of.kind, held) if held else held
             if port is not None and not tree and not of.optional:
                 say("warning", f"Input parameter {port.nickname} failed to collect data")

@@ -53,7 +53,8 @@ class Path:
 def geodesic(mesh: Any, start: int, end: int) -> Path:
     """The locally shortest path on a mesh between two of its vertices; quads count as two triangles.
 
-    Raises InputError for vertices that do not exist, are the same, or are not connected.
+    Raises InputError for vertices that do not exist, are the same, or are not connected, and where the path crosses a
+    triangle with two corners at one place.
     """
     m = as_mesh(mesh)
     faces = oriented(np.column_stack([split(m), split(m)[:, 2]]))[:, :3]
@@ -220,7 +221,11 @@ class _Surface:
         return places
 
     def _far(self, a: int, b: int) -> float:
-        return float(np.linalg.norm(self.x[b] - self.x[a]))
+        size = float(np.linalg.norm(self.x[b] - self.x[a]))
+        if size == 0.0:
+            said = f"vertices {a} and {b} of a triangle that a seam crosses are at one place"
+            raise InputError("mesh", f"{said}; weld the mesh first")
+        return size
 
     def _placed(self, start: int, door: Edge) -> tuple[Array, Array]:
         """The first door seen from a start at 0, its right end along x."""
@@ -233,7 +238,7 @@ class _Surface:
     def _third(self, door: Edge, left: Array, right: Array, new: int) -> Array:
         """Where a vertex lies beyond a door."""
         a, b, c = self.x[door[0]], self.x[door[1]], self.x[new]
-        size = np.linalg.norm(b - a)
+        size = self._far(*door)
         along, across = float((c - a) @ (b - a) / size), float(np.linalg.norm(np.cross(b - a, c - a)) / size)
         way = (right - left) / np.linalg.norm(right - left)
         return np.asarray(left + along * way + across * np.array([-way[1], way[0]]))

@@ -21,6 +21,8 @@ from hookean.values.mesh import Mesh
 Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
+_FARTHEST = 1e70  # fourth powers of larger lengths overflow
+
 
 def as_mesh(obj: Any) -> Mesh:
     """Any mesh as a `Mesh`; vertices keep their order, nothing is welded.
@@ -28,7 +30,7 @@ def as_mesh(obj: Any) -> Mesh:
     Faces of more than four corners (COMPAS) are cut into triangles by ears, in the plane across
     their vector area. A face that repeats a corner becomes the triangle it is, or is left out where
     fewer than three corners remain. Raises InputError for an unknown type, a vertex that is not
-    finite, or a face that names no vertex or crosses itself.
+    finite or beyond 1e70, or a face that names no vertex or crosses itself.
     """
     vertices: Any
     faces: Any
@@ -57,6 +59,9 @@ def as_mesh(obj: Any) -> Mesh:
     bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
     if len(bad):
         raise InputError(f"mesh/vertices/{bad[0]}", "it is not finite; give finite coordinates")
+    far = np.flatnonzero((np.abs(points) > _FARTHEST).any(axis=1))
+    if len(far):
+        raise InputError(f"mesh/vertices/{far[0]}", f"a coordinate of it is beyond {_FARTHEST:g}; use larger units")
     return Mesh(points, tidy_faces(_quads(points, faces)))
 
 
@@ -249,9 +254,13 @@ def _quads(points: Array, faces: Iterable[Any]) -> Index:
     rows: list[list[int]] = []
     for number, face in enumerate(faces):
         try:
-            corner = [int(v) for v in face]
+            given = list(face)
+            corner = [int(v) for v in given]
+            whole = all(a == b for a, b in zip(corner, given, strict=True))
         except (TypeError, ValueError, OverflowError):
-            raise InputError(f"mesh/faces/{number}", "it is not a list of whole numbers; give its vertices") from None
+            whole = False
+        if not whole:
+            raise InputError(f"mesh/faces/{number}", "it is not a list of whole numbers; give its vertices")
         if len(corner) < 3 or min(corner) < 0 or max(corner) >= len(points):
             raise InputError(
                 f"mesh/faces/{number}", f"{corner} must name 3 or more of the {len(points)} vertices, counted from 0"

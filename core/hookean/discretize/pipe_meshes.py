@@ -15,6 +15,7 @@ Array = NDArray[np.float64]
 Index = NDArray[np.int64]
 
 MARGIN = 1.05  # how much farther from its node a ring is than where it would touch the next one
+FINEST, FARTHEST = 2e-14, 1e70  # radius as a part of coordinates, of which rounding is a hundredth; coordinate
 SHORTEST = 0.25  # of the radius: distance of a ring from a node with lines that go straight on
 
 
@@ -25,7 +26,8 @@ def pipes(lines: ArrayLike, radius: float, sides: int = 6, tolerance: float = 1e
     are one node. Where lines meet, the prisms end in rings on a sphere about the node, at the distance
     r / tan(a / 2), a the smallest angle between two of its lines; triangles of the convex hull of the rings close it.
     A free end is closed by a flat cap. Faces are oriented outwards. Smooth it by `refine(mesh, smooth=True)`.
-    Raises InputError for a line that is too short between its nodes, two lines in the same place, fewer than 3 sides.
+    Raises InputError for a line that is too short between its nodes, two lines in the same place, fewer than 3 sides,
+    and coordinates that are too large for float64 beside the radius.
     Source: Srinivasan, Mandal and Akleman, "Solidifying wireframes", 2005.
     """
     if not (np.isfinite(radius) and radius > 0.0):
@@ -33,6 +35,9 @@ def pipes(lines: ArrayLike, radius: float, sides: int = 6, tolerance: float = 1e
     if not 3 <= sides <= 1000:
         raise InputError("sides", f"it is {sides!r}; give a whole number from 3 to 1000")
     ends = _checked("lines", lines, (2, 3))
+    if (far := float(np.abs(ends).max(initial=0.0))) > radius / FINEST or far > FARTHEST:
+        said = f"coordinates up to {far:.4g} are too large for float64 beside a radius of {radius:g}"
+        raise InputError("lines", f"{said}; move them to the origin, or use other units")
     if len(unique_lines(ends, tolerance)[0]) < len(ends):
         kept = set(unique_lines(ends, tolerance)[0].tolist())
         twice = next(i for i in range(len(ends)) if i not in kept)

@@ -165,6 +165,9 @@ class Force(Model):
     solid: ClassVar[bool] = True  # something lies between the particles of an element, which others may touch
     pointed: ClassVar[bool] = False  # an element may start and end at one particle
     momentary: ClassVar[bool] = False  # no force: momentum at moments, by `kick` and `next_moment`; it has no kernel
+    # acts only while things touch, at once with the lumped stiffness that its kernel adds before: steps of a motion
+    # are short enough for that
+    touches: ClassVar[bool] = False
     rewired: ClassVar[bool] = False  # which of its elements feel one another changes with the shape
     # its particles have orientations: the indices of its elements go on with their slots and references, and a column
     # `arm` for each particle gets the length of its slot (see `rotations`)

@@ -264,6 +264,7 @@ class Crowd(Force):
     creates: ClassVar[bool] = False
     solid: ClassVar[bool] = False
     rewired: ClassVar[bool] = True
+    touches: ClassVar[bool] = True
     outputs: ClassVar[dict[str, str]] = {"force": "force"}
     kernel: ClassVar[Any] = staticmethod(collide_kernel)
 

@@ -40,6 +40,7 @@ class CollideCurve(Force):
     creates: ClassVar[bool] = False
     shared: ClassVar[tuple[str, ...]] = ("curve", "normal")
     on_film: ClassVar[OnFilm] = "spread"
+    touches: ClassVar[bool] = True
     outputs: ClassVar[dict[str, str]] = {"depth": "length", "force": "force"}
     kernel: ClassVar[Any] = staticmethod(solid_kernel)
     hessian: ClassVar[Any] = staticmethod(solid_hessian)

@@ -128,6 +128,7 @@ class CollideSolid(ToMesh):
     strength: NonNegatives = Field(default=1000.0, description="k, stiffness of a contact [force/length]")
 
     formula: ClassVar[str] = "E = k d²/2"
+    touches: ClassVar[bool] = True
     outputs: ClassVar[dict[str, str]] = {"depth": "length", "force": "force"}
     kernel: ClassVar[Any] = staticmethod(solid_kernel)
     hessian: ClassVar[Any] = staticmethod(solid_hessian)

@@ -114,7 +114,9 @@ class Enclosed(groups.Grouped):
         volume = float((share * volumes(places.x[corners], places.x[corners[:1, 0]])).sum())
         size = np.ptp(places.x[corners].reshape(-1, 3), axis=0).max() if len(faces) else 0.0
         if not reason and not factor * volume > 1e-12 * size**3:
-            reason = f"a volume of {volume:g} is enclosed; more than 0 is needed: turn its faces outwards"
+            unit = places.units.of("length^3")
+            what = "turn its faces outwards" if volume < -1e-12 * size**3 else "give a mesh that is not flat"
+            reason = f"a volume of {volume:g} {unit} is enclosed; more than 0 is needed: {what}"
         if reason:
             raise InputError(f"/meshes/{name}/faces", reason)
         return Block.of(

@@ -106,6 +106,7 @@ class SolidPlaneCollide(Force):
     creates: ClassVar[bool] = False
     remembers: ClassVar[bool] = True
     yielding: ClassVar[tuple[str, ...]] = ("friction",)
+    touches: ClassVar[bool] = True
     outputs: ClassVar[dict[str, str]] = {"depth": "length", "force": "force"}
     kernel: ClassVar[Any] = staticmethod(solid_plane_kernel)
     hessian: ClassVar[Any] = staticmethod(solid_plane_hessian)

@@ -197,7 +197,7 @@ class Watch:
         good = self.good.copy()
         self.back = state.iteration - good.iteration
         state.x, state.v, state.memory = good.x, good.v, good.memory
-        state.time, state.iteration = good.time, good.iteration
+        state.time, state.iteration, state.force_scale = good.time, good.iteration, good.force_scale
         state.scratch["parts"] = np.array([parts])
         give_back(state, good)
         accept(system, state, self.found)

@@ -111,7 +111,7 @@ def warning(system: System, state: State, method: Solver) -> str:
     settings, unit = system.scene.settings, system.scene.units.time
     if settings.divide_steps or settings.time_step <= method.limit.step(*Bounds.of(system, state).highest(state)):
         return ""
-    rates = _rates(system, state)
+    rates = _foreseen(system, state)
     stable = method.limit.step(*rates)
     if settings.time_step <= stable:
         return ""
@@ -146,9 +146,8 @@ def too_long(system: System, state: State, method: Solver, held: tuple[float, fl
 def roomy(system: System, state: State, method: Solver) -> float:
     """A step [time] that is short enough for large motions from a shape, as far as can be known before they happen."""
     bounds = Bounds.of(system, state)
-    stable = time_step_of_all_shapes(system, state, method.limit) or CAUTION * stable_time_step(
-        system, state, method.limit
-    )
+    steady = time_step_of_all_shapes(system, state, method.limit)
+    stable = steady or CAUTION * method.limit.step(*_foreseen(system, state))
     damped = margin(*bounds.extremes(state)) == DAMPED
     return (DAMPED if damped else 0.5 * UNDAMPED) * stable
 
@@ -202,7 +201,35 @@ def longest(system: System, state: State, limit: Limit) -> float:
     holds = Bounds.of(system, state).holds(state, limit)
     if system.steady or system.scene.settings.time_step <= holds:
         return holds
-    return max(holds, CAUTION * stable_time_step(system, state, limit))
+    return max(holds, min(CAUTION * stable_time_step(system, state, limit), contact_step(system, state, limit)))
+
+
+def contact_step(system: System, state: State, limit: Limit) -> float:
+    """The step [time] that holds while what may touch does, wherever it is now; infinite without contacts.
+
+    At this step nothing that a contact can stop passes through it: at omega dt <= 1 a speed v moves it by v / omega at
+    most, which is how deep it comes.
+    """
+    bounds = _contacts(system, state)
+    return np.inf if bounds is None else bounds.holds(state, limit)
+
+
+def _contacts(system: System, state: State) -> Bounds | None:
+    """Bounds with the stiffness of contacts alone, whether they touch or not; None without any. A free pair with a
+    contact k between two particles of mass m vibrates with 2 k / m, twice what either has."""
+    groups = [(g, memory) for g, memory in zip(system.groups, state.memory, strict=True) if g.cls.touches]
+    if not groups:
+        return None
+    alone = copy(system)
+    alone.groups = [group for group, _ in groups]
+    w = alone.evaluate(replace(state, memory=[memory for _, memory in groups]))[1]
+    return Bounds.of(system, state, 2.0 * w)
+
+
+def _foreseen(system: System, state: State) -> tuple[float, float, float]:
+    """`_rates`, with the stiffness of contacts as if they touched."""
+    (stiffness, damping, drag), bounds = _rates(system, state), _contacts(system, state)
+    return max(stiffness, bounds.highest(state)[0] if bounds is not None else 0.0), damping, drag
 
 
 def parts(system: System, state: State, limit: Limit) -> int:

@@ -126,7 +126,9 @@ def _plain_kind(model: type[BaseModel], name: str) -> type | None:
 
 
 def _named_kind(value: bool | int | str) -> str:
-    return "a text" if isinstance(value, str) else str(value).lower()
+    if isinstance(value, str):
+        return "a text"
+    return str(value).lower() if abs(value) < 1e15 else "a number"
 
 
 def fault(sentence: str, at: str = "") -> PydanticCustomError:
@@ -226,7 +228,7 @@ def _odd(value: Any, at: str = "") -> str:
 
 def _shaped(value: Any, *shape: int | None, what: str) -> NDArray[np.float64]:
     array = _real(value)
-    if array.size == 0:
+    if array.size == 0 and shape[0] is None:
         array = np.zeros([0 if s is None else s for s in shape])
     if array.ndim != len(shape) or any(s is not None and s != a for s, a in zip(shape, array.shape, strict=True)):
         raise fault(f"shape {list(array.shape)} given; {what} expected")

@@ -135,6 +135,8 @@ def _meant(given: Any, known: list[str], introduction: str, *, always: bool = Fa
 
 def _shown(value: Any) -> str:
     """A given value as JSON, if it is short; else its type."""
+    if isinstance(value, int) and abs(value) >= 10**80:
+        return "a number of more than 80 digits"
     if isinstance(value, str | int | float) or value is None:
         text = json.dumps(value if not isinstance(value, str) else value[:60])
         return text if len(text) <= 80 else f"{text[:60]}..."
