@@ -15,6 +15,7 @@ from hookean import Scene, relax
 from hookean_canvas.archive import Type
 from hookean_canvas.kangaroo import translate as kangaroo
 from hookean_canvas.run import graph
+from hookean_canvas.run.checking import Checked
 from hookean_canvas.run.evaluate import Canvas, Outcome
 from serving import HANG
 
@@ -38,6 +39,17 @@ def ran(d: Kangaroo, tmp_path: Path) -> Outcome:
 def places(outcome: Outcome, panel: str = "particles") -> Any:
     """Points that a panel shows, in their order."""
     return np.array([[p.X, p.Y, p.Z] for p in outcome.panels[panel].values_in_order()])
+
+
+def test_an_engine_that_is_paused_is_not_at_rest(tmp_path: Path) -> None:
+    """Nothing is scheduled any more, and the load is out of balance: it is named by those who read the outcome."""
+    root, _ = kangaroo.translate(tent().archive())
+    found = graph.of(root)
+    outcome = Canvas(found, {"On": "false"}).run(HANG)
+    assert not outcome.at_rest and len(outcome.paused) == 1
+    checked = Checked(tmp_path / "tent.ghx", outcome, [])
+    assert checked.faults == [f"{outcome.paused[0]} It is paused; set its input on to True"]
+    assert checked.as_json()["at_rest"] is False
 
 
 def test_a_translated_classic_cable_hangs_as_the_same_scene_does(tmp_path: Path) -> None:

@@ -52,7 +52,8 @@ class Checked:
     def faults(self) -> list[str]:
         """Why it is not as it should be; empty where it is."""
         found = [f"{m.component}: {m.text}" for m in self.outcome.messages if m.level == "error"]
-        if not self.outcome.at_rest:
+        found += [f"{text} It is paused; set its input on to True" for text in self.outcome.paused]
+        if not self.outcome.at_rest and not self.outcome.paused:
             found.append(f"it was not at rest after {self.outcome.solutions} solutions; raise --seconds")
         return found + [str(one) for one in self.compared if not one.holds]
 

@@ -49,14 +49,15 @@ class Message:
 
 @dataclass
 class Outcome:
-    """What a run came to: `panels` fed by wires, by their names; messages; whether all is at rest; and `engines`, the
-    status of each Engine."""
+    """What a run came to: `panels` fed by wires, by their names; messages; whether all is at rest; `engines`, the
+    status of each Engine; and those of Engines that are `paused` on their way to rest."""
 
     panels: dict[str, Tree]
     messages: list[Message]
     solutions: int
     at_rest: bool
     engines: list[str] = field(default_factory=list)
+    paused: list[str] = field(default_factory=list)
 
 
 class Canvas:
@@ -106,7 +107,8 @@ class Canvas:
             if node.guid == PANEL and node.inputs[0].sources:
                 panels[_free(node.label, panels)] = self._results[node.id]
         engines = [text for node in self._order if node.name == ENGINE for text in self._status(node)]
-        return Outcome(panels, messages, self._solutions, at_rest, engines)
+        paused = [text for text in engines if ": Running:" in text] if at_rest else []
+        return Outcome(panels, messages, self._solutions, at_rest and not paused, engines, paused)
 
     def _status(self, engine: Node) -> list[str]:
         """The status of an Engine; nothing where it has not been run."""
