@@ -51,6 +51,8 @@ export class Session {
   private readonly waiting = new Map<number, Waiting>();
   private readonly watchers = new Set<(frame: Frame) => void>();
   private orders = 0;
+  /** When the last order is answered or refused. */
+  private last: Promise<unknown> = Promise.resolve();
   private pauses = 0;
   private pausing = 0; // those that are not answered yet
   private tag: string | null = null;
@@ -140,6 +142,13 @@ export class Session {
       this.hands -= 1;
       void this.describe();
     };
+  }
+
+  /** The anchors after every order that was given, which `anchors` may not have yet; those if they cannot be read. */
+  async anchorsOfNow(): Promise<Anchor[]> {
+    await this.last;
+    const isRead = this.described.anchors === this.stand().anchors;
+    return isRead ? this.anchors.value : api.anchors(this.key).catch(() => this.anchors.value);
   }
 
   /** Whether this page was opened by a read-only link. */
@@ -310,6 +319,12 @@ export class Session {
   };
 
   private order(order: Order): Promise<Summary> {
+    const made = this.send(order);
+    this.last = made.catch(() => null);
+    return made;
+  }
+
+  private send(order: Order): Promise<Summary> {
     if (this.readOnly) return Promise.reject(new api.Refused(403, READ_ONLY, "read-only"));
     return new Promise((resolve, reject) => {
       if (this.socket?.readyState !== WebSocket.OPEN) {

@@ -70,6 +70,33 @@ def test_the_eye_stays_where_it_is_after_a_drag(cable: Studio):
     assert np.abs(np.subtract(cable.place(9), stays)).max() < 1.0
 
 
+AT_ONCE = """([button, particle, across]) => {
+    const canvas = document.querySelector("canvas");
+    const { x, y } = window.hookean.project(particle);
+    const told = { pointerId: 1, isPrimary: true, clientY: y, bubbles: true };
+    const fire = (kind, clientX) => canvas.dispatchEvent(new PointerEvent(kind, { ...told, clientX }));
+    [...document.querySelectorAll("button")].find((one) => one.textContent.trim() === button).click();
+    for (const [kind, at] of [["down", x], ["move", x + across], ["up", x + across]]) fire(`pointer${kind}`, at);
+}"""
+
+
+@pytest.mark.slow
+def test_an_anchor_that_undo_brings_back_stays_one_when_it_is_dragged_at_once(cable: Studio):
+    """The page has not read of it yet: a drag that takes it for a free particle would release it at its end."""
+    key, service, page = cable.key, cable.service, cable.page
+    held = lambda: {i for anchor in service.anchors(key) for i in anchor["particles"]}  # noqa: E731
+    page.get_by_label("Particle number").fill("0")
+    page.keyboard.press("Enter")
+    cable.press("Release")
+    cable.until(lambda: 0 not in held())
+    page.get_by_role("button", name="Pin", exact=True).wait_for()
+    cable.place(0)
+    page.evaluate(AT_ONCE, ["Undo", 0, 40])
+    cable.until(lambda: service.summary(key)["undo"] == 1, what="the drag")
+    cable.settled()
+    assert 0 in held()
+
+
 WATCHED = """() => {
     window.missing = 0;
     const look = () => {
