@@ -97,6 +97,28 @@ def test_an_anchor_that_undo_brings_back_stays_one_when_it_is_dragged_at_once(ca
     assert 0 in held()
 
 
+TYPED = """(told) => {
+    const fields = [...document.querySelectorAll('[aria-label="Position of particle 0"] input')];
+    fields.forEach((field, i) => {
+        field.value = told[i];
+        for (const kind of ["input", "change"]) field.dispatchEvent(new Event(kind, { bubbles: true }));
+    });
+}"""
+
+
+@pytest.mark.slow
+def test_coordinates_typed_one_after_the_other_are_all_kept(cable: Studio):
+    """The page reads where an anchor is held after each edit: the next coordinate does not bring back the old ones."""
+    service, page = cable.service, cable.page
+    page.get_by_label("Particle number").fill("0")
+    page.keyboard.press("Enter")
+    page.get_by_role("group", name="Position of particle 0").get_by_role("spinbutton").first.wait_for()
+    page.evaluate(TYPED, ["-1", "0.5", "0.25"])
+    cable.settled()
+    [held] = [anchor for anchor in service.anchors(cable.key) if 0 in anchor["particles"]]
+    assert held["targets"][held["particles"].index(0)] == [-1.0, 0.5, 0.25]
+
+
 WATCHED = """() => {
     window.missing = 0;
     const look = () => {

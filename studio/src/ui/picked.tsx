@@ -94,6 +94,18 @@ function Particle({ studio, index }: Shown) {
   );
 }
 
+/** When all coordinates that were typed have arrived: one that is typed quickly after another keeps that one. */
+let moves: Promise<void> = Promise.resolve();
+
+async function moved(session: Session, index: number, axis: number, to: number): Promise<void> {
+  const held = holder(await session.anchorsOfNow(), index);
+  const now = held?.targets[held.particles.indexOf(index)];
+  if (!now) return;
+  const grip = new Grip(session, index);
+  grip.lead(now.map((old, other) => (other === axis ? to : old)) as Point);
+  await grip.drop();
+}
+
 /** The position of a particle, which can be typed if it is held. */
 function Position({
   studio: { session },
@@ -104,12 +116,7 @@ function Position({
 }: Shown & { at: Point | null; anchor: Anchor | undefined; stale: boolean }) {
   const unit = session.topology.value?.units.length ?? "";
   const move = (axis: number) => (to: number | null) => {
-    const now = anchor?.targets[anchor.particles.indexOf(index)];
-    if (to === null || !now) return;
-    const target = now.map((old, other) => (other === axis ? to : old)) as Point;
-    const grip = new Grip(session, index);
-    grip.lead(target);
-    void grip.drop();
+    if (to !== null) moves = moves.then(() => moved(session, index, axis, to));
   };
   return (
     <div class="components" role="group" aria-label={`Position of particle ${index}`}>
