@@ -114,8 +114,10 @@ def test_a_name_is_one_that_an_address_can_have():
 
 def test_a_deleted_session_is_reported(shown: hookean.View, service: Service):
     service.client.delete("/v1/sessions/from-python")
-    with pytest.raises(ConnectionError, match="session"):
-        _ = shown.pick
+    for use in (lambda: shown.pick, lambda: shown.update(CABLE), lambda: shown.update(values=[1, 2, 3, 4, 5])):
+        with pytest.raises(ConnectionError, match=r"session from-python was deleted; show the scene again"):
+            use()
+    assert service.client.get("/v1/sessions/from-python").status_code == 404
 
 
 @pytest.mark.soak
