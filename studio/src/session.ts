@@ -381,14 +381,20 @@ export class Session {
     this.unacknowledged = [];
     this.lose("The connection was lost before the service answered; this may or may not have been done.");
     this.connection.value = event.code === 4404 ? "gone" : "lost";
-    if (event.code === 4404) return;
+    if (event.code === 4404) return this.again(LONGEST_WAIT); // a program may make one with its key again
     if (event.code === 4429) this.said.value = event.reason;
     const found = await api.summary(this.key).then(() => 200, (error: api.Refused) => error.status);
     if (this.closed) return;
     if (found === 401 || found === 403) this.connection.value = "locked";
-    else if (found === 404) this.connection.value = "gone";
-    else this.retry = window.setTimeout(() => this.connect(), this.wait);
+    else {
+      if (found === 404) this.connection.value = "gone";
+      this.again(found === 404 ? LONGEST_WAIT : this.wait);
+    }
     this.wait = Math.min(2 * this.wait, LONGEST_WAIT);
+  }
+
+  private again(wait: number): void {
+    this.retry = window.setTimeout(() => this.connect(), wait);
   }
 
   private lose(sentence: string): void {

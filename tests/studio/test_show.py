@@ -120,6 +120,16 @@ def test_a_deleted_session_is_reported(shown: hookean.View, service: Service):
     assert service.client.get("/v1/sessions/from-python").status_code == 404
 
 
+def test_a_page_whose_session_was_deleted_shows_the_next_one_of_its_name(tab: Studio, shown: hookean.View):
+    """The same name shows the next scene in the same page, a view that was closed before or not."""
+    tab.open("from-python")
+    shown.close()
+    tab.page.get_by_text("This session was deleted").wait_for()
+    again = hookean.show({**CABLE, "particles": [[x, 1, 0] for x in range(6)]}, name="from-python", browser=False)
+    tab.rests_at(again.particles)
+    tab.page.get_by_text("This session was deleted").wait_for(state="detached")
+
+
 @pytest.mark.soak
 def test_a_service_is_started_where_none_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     """The same folder as `hookean serve` uses has its address afterwards; the next `show` joins it."""
