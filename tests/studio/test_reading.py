@@ -140,6 +140,22 @@ def test_load_cases_are_solved_and_the_largest_values_listed(studio: Studio):
     page.get_by_role("group", name="Legend").get_by_text("Utilisation [%]").wait_for()
     drawn = truth.cases["ULS"].result.particles
     studio.until(lambda: np.abs(studio.particles() - drawn).max() < 1e-4)
+    # what is written on the canvas is of the case, too, and the panel of what is picked is not
+    page.get_by_label("Spring number").fill("0")
+    page.keyboard.press("Enter")
+    page.get_by_text("Present values. The canvas shows: ULS.").wait_for()
+    page.get_by_label("Labels", exact=True).select_option("forces")
+    written = page.get_by_role("img", name="Written beside the form")
+    force = truth.cases["ULS"].result.forces[0]["force"][0]
+    assert number(written.locator("text").text_content() or "") == pytest.approx(force, rel=LEGEND)
+    page.get_by_label("Particles to measure").evaluate("(one) => (one.closest('details').open = true)")
+    page.get_by_label("Particles to measure").fill("0 12")
+    measured = page.get_by_role("img", name="Measured lengths").locator("text").first
+    assert number(measured.text_content() or "") == pytest.approx(np.linalg.norm(drawn[12] - drawn[0]), rel=SHOWN)
+    page.get_by_label("Particles to measure").fill("")
+    page.get_by_label("Labels", exact=True).select_option("none")
+    page.get_by_label("Spring number").fill("")
+    page.keyboard.press("Enter")
     before = studio.service.summary(studio.key)["revision"]
     studio.drag(0, 40, -60)  # turns the view: what is not of now cannot be moved
     assert studio.service.summary(studio.key)["revision"] == before

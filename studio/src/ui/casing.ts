@@ -153,7 +153,10 @@ export class Casing {
     }
     const one = solved.cases.find((found) => found.name === name);
     const frame = (this.own = frameOf(solved, one ?? null, topology.value!, factor));
-    if (name === ENVELOPE) frame.reactions.fill(0); // the largest of all cases have no directions
+    if (name === ENVELOPE) {
+      frame.reactions.fill(0); // the largest of all cases have no directions
+      frame.springForces = colours(solved, name, "force", topology.value!)!.values;
+    }
     const scaled = one && factor !== 1 ? `, displacements x ${said(factor)}` : "";
     const called = name === FORM ? "Form" : name === ENVELOPE ? "Form with the largest values of all cases" : name;
     const loads = name === ENVELOPE ? NO_LOADS : loaded(one?.result ?? solved.form, topology.value!);

@@ -36,6 +36,9 @@ export function PickedPanel({ studio }: { studio: Studio }) {
         {number("particle", "Particle", topology?.particles ?? 0)}
         {number("spring", "Spring", topology?.springs.length ?? 0)}
       </div>
+      {picked && options.still.value && (
+        <p class="note">Present values. The canvas shows: {options.still.value.said}.</p>
+      )}
       {!picked && <p class="faint">Click a particle or a spring, or give its number.</p>}
       {picked?.kind === "particle" && <Particle key={picked.index} studio={studio} index={picked.index} />}
       {picked?.kind === "spring" && <Spring key={picked.index} studio={studio} index={picked.index} />}
