@@ -122,6 +122,12 @@ def test_a_spring_of_rest_length_0_has_no_strain(tab: Studio):
     tab.until(lambda: told("Rest length") != "reading ...")
     assert (told("Rest length"), told("Strain")) == ("0 m", "undefined: the rest length is 0")
     assert told("Force") == "2000 N tension"  # 1000 N/m, 2 m
+    legend = tab.page.get_by_role("group", name="Legend")
+    tab.page.get_by_role("radio", name="Strain", exact=True).check()
+    legend.get_by_text("Strain: undefined, the rest lengths are 0").wait_for()
+    legend.get_by_text("Force").wait_for(state="detached")  # the springs are grey
+    tab.page.get_by_role("radio", name="Force", exact=True).check()
+    legend.get_by_text("Force: all equal").wait_for()
 
 
 def test_a_particle_is_pinned_and_released(cable: Studio):
