@@ -11,6 +11,13 @@ export const gesture = (what: string) => `${what}-${performance.timeOrigin.toStr
 /** The anchor that holds a particle. */
 export const holder = (anchors: Anchor[], particle: number) => anchors.find((a) => a.particles.includes(particle));
 
+let moves: Promise<unknown> = Promise.resolve();
+
+/** Do this after all that was asked for before, so that it begins where they have left the anchors. */
+export function inTurn(move: () => Promise<unknown>): void {
+  moves = moves.then(move, move);
+}
+
 /** An edit waits no longer than this for what the one before did to be seen [ms]. */
 const LONGEST_WAIT = 300;
 

@@ -1,5 +1,5 @@
 // The picked particle or spring in numbers; both can be picked by number, too.
-import { Grip, holder, pin, release } from "../hand";
+import { Grip, holder, inTurn, pin, release } from "../hand";
 import type { Anchor, Point } from "../model";
 import type { Session } from "../session";
 import type { View } from "../view/types";
@@ -97,9 +97,7 @@ function Particle({ studio, index }: Shown) {
   );
 }
 
-/** When all coordinates that were typed have arrived: one that is typed quickly after another keeps that one. */
-let moves: Promise<void> = Promise.resolve();
-
+/** To a coordinate; one that is typed quickly after another keeps that one. */
 async function moved(session: Session, index: number, axis: number, to: number): Promise<void> {
   const held = holder(await session.anchorsOfNow(), index);
   const now = held?.targets[held.particles.indexOf(index)];
@@ -119,7 +117,7 @@ function Position({
 }: Shown & { at: Point | null; anchor: Anchor | undefined; stale: boolean }) {
   const unit = session.topology.value?.units.length ?? "";
   const move = (axis: number) => (to: number | null) => {
-    if (to !== null) moves = moves.then(() => moved(session, index, axis, to));
+    if (to !== null) inTurn(() => moved(session, index, axis, to));
   };
   return (
     <div class="components" role="group" aria-label={`Position of particle ${index}`}>
