@@ -97,6 +97,37 @@ def test_an_anchor_that_undo_brings_back_stays_one_when_it_is_dragged_at_once(ca
     assert 0 in held()
 
 
+BETWEEN = """async () => {
+    const canvas = document.querySelector("canvas");
+    const named = (name) => [...document.querySelectorAll("button")].find((one) => one.textContent.trim() === name);
+    const pause = (time = 0) => new Promise((done) => setTimeout(done, time));
+    for (let i = 0; i < 60; i++) {
+        const { x, y } = window.hookean.project(0);
+        named(i % 2 ? "Redo" : "Undo").click();
+        for (let last = performance.now() + 500; performance.now() < last; await pause()) {
+            if (window.hookean.particles().length) continue;
+            const told = { pointerId: 1, isPrimary: true, clientX: x, clientY: y, bubbles: true };
+            canvas.dispatchEvent(new PointerEvent("pointerdown", told));
+            const { cursor } = canvas.style;
+            canvas.dispatchEvent(new PointerEvent("pointerup", told));
+            return cursor;
+        }
+        await pause(100);
+    }
+    return "the page was never between two topologies";
+}"""
+
+
+@pytest.mark.slow
+def test_an_anchor_is_taken_between_a_topology_and_its_picture(cable: Studio):
+    """Undo of what was drawn gives another topology: a press before its first picture takes the anchor all the same."""
+    key, service = cable.key, cable.service
+    service.edit(key, {"draw": {"add": {"points": [[3, 0, 2]]}}})
+    cable.until(lambda: len(cable.particles()) == 12)
+    cable.place(0)
+    assert cable.page.evaluate(BETWEEN) == "grabbing"
+
+
 TYPED = """(told) => {
     const fields = [...document.querySelectorAll('[aria-label="Position of particle 0"] input')];
     fields.forEach((field, i) => {

@@ -257,6 +257,7 @@ class Drawing implements View {
 
   private searched(): Searched | null {
     const { picture, stage, eye, options } = this;
+    if (!this.drawn) this.draw(false); // a press may come between another topology and its picture
     if (!this.drawn || !picture.form) return null;
     const { mesh, springs } = options.layers.value;
     return {
