@@ -11,6 +11,13 @@ export const gesture = (what: string) => `${what}-${performance.timeOrigin.toStr
 /** The anchor that holds a particle. */
 export const holder = (anchors: Anchor[], particle: number) => anchors.find((a) => a.particles.includes(particle));
 
+let moves: Promise<unknown> = Promise.resolve();
+
+/** Do this after all that was asked for before, so that it begins where they have left the anchors. */
+export function inTurn(move: () => Promise<unknown>): void {
+  moves = moves.then(move, move);
+}
+
 /** An edit waits no longer than this for what the one before did to be seen [ms]. */
 const LONGEST_WAIT = 300;
 
@@ -65,31 +72,31 @@ async function seen(): Promise<void> {
 export class Grip {
   private readonly edits: Newest;
   private readonly gesture = gesture("drag");
-  private readonly axes: string;
-  readonly anchored: boolean;
   private readonly end: () => void;
+  /** What holds it when it is taken: an order that is on its way may hold or release it. */
+  private readonly anchor: Promise<Anchor | undefined>;
+  private target: Point | null = null;
 
   constructor(
     private readonly session: Session,
     readonly particle: number,
   ) {
-    const anchor = holder(session.anchors.value, particle);
-    this.anchored = anchor !== undefined;
-    this.axes = anchor?.axes ?? "xyz";
+    this.anchor = session.anchorsOfNow().then((anchors) => holder(anchors, particle));
     this.edits = new Newest(session);
     this.end = session.lead();
   }
 
   /** Take it to `target` [length]. */
   lead(target: Point): void {
-    const held = { particles: [this.particle], targets: [target], axes: this.axes };
-    this.edits.put({ pin: [held], gesture: this.gesture });
+    this.target = target;
+    void this.anchor.then((anchor) => this.put(anchor?.axes ?? "xyz"));
   }
 
   /** Let go: an anchor stays where it was led, a free particle is free again. */
   async drop(): Promise<void> {
+    const anchor = await this.anchor;
     await this.edits.settled();
-    if (!this.anchored && this.edits.made) await this.session.tell({ release: [this.particle], gesture: this.gesture });
+    if (!anchor && this.edits.made) await this.session.tell({ release: [this.particle], gesture: this.gesture });
     this.end();
   }
 
@@ -97,6 +104,14 @@ export class Grip {
   async takeBack(): Promise<void> {
     await this.drop();
     if (this.edits.made) await this.session.tell("undo");
+  }
+
+  /** The newest target, once: those before it are passed over. */
+  private put(axes: string): void {
+    if (!this.target) return;
+    const held = { particles: [this.particle], targets: [this.target], axes };
+    this.target = null;
+    this.edits.put({ pin: [held], gesture: this.gesture });
   }
 }
 

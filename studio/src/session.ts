@@ -51,6 +51,8 @@ export class Session {
   private readonly waiting = new Map<number, Waiting>();
   private readonly watchers = new Set<(frame: Frame) => void>();
   private orders = 0;
+  /** When the last order is answered or refused. */
+  private last: Promise<unknown> = Promise.resolve();
   private pauses = 0;
   private pausing = 0; // those that are not answered yet
   private tag: string | null = null;
@@ -140,6 +142,13 @@ export class Session {
       this.hands -= 1;
       void this.describe();
     };
+  }
+
+  /** The anchors after every order that was given, which `anchors` may not have yet; those if they cannot be read. */
+  async anchorsOfNow(): Promise<Anchor[]> {
+    await this.last;
+    const isRead = this.described.anchors === this.stand().anchors;
+    return isRead ? this.anchors.value : api.anchors(this.key).catch(() => this.anchors.value);
   }
 
   /** Whether this page was opened by a read-only link. */
@@ -310,6 +319,12 @@ export class Session {
   };
 
   private order(order: Order): Promise<Summary> {
+    const made = this.send(order);
+    this.last = made.catch(() => null);
+    return made;
+  }
+
+  private send(order: Order): Promise<Summary> {
     if (this.readOnly) return Promise.reject(new api.Refused(403, READ_ONLY, "read-only"));
     return new Promise((resolve, reject) => {
       if (this.socket?.readyState !== WebSocket.OPEN) {
@@ -366,14 +381,20 @@ export class Session {
     this.unacknowledged = [];
     this.lose("The connection was lost before the service answered; this may or may not have been done.");
     this.connection.value = event.code === 4404 ? "gone" : "lost";
-    if (event.code === 4404) return;
+    if (event.code === 4404) return this.again(LONGEST_WAIT); // a program may make one with its key again
     if (event.code === 4429) this.said.value = event.reason;
     const found = await api.summary(this.key).then(() => 200, (error: api.Refused) => error.status);
     if (this.closed) return;
     if (found === 401 || found === 403) this.connection.value = "locked";
-    else if (found === 404) this.connection.value = "gone";
-    else this.retry = window.setTimeout(() => this.connect(), this.wait);
+    else {
+      if (found === 404) this.connection.value = "gone";
+      this.again(found === 404 ? LONGEST_WAIT : this.wait);
+    }
     this.wait = Math.min(2 * this.wait, LONGEST_WAIT);
+  }
+
+  private again(wait: number): void {
+    this.retry = window.setTimeout(() => this.connect(), wait);
   }
 
   private lose(sentence: string): void {

@@ -91,3 +91,15 @@ def test_kinds_for_meshes_lines_and_rows_of_particles(tab: Studio):
     add(tab, "Angle", "Particles by number", Numbers="0 1")
     tab.page.get_by_text("2 particles given; Angle needs").wait_for()
     assert forces(tab)[-1]["kind"] == "floor"
+
+
+@pytest.mark.slow
+def test_a_choice_without_a_default_says_none(tab: Studio):
+    """A beam releases nothing at its ends where nothing is chosen."""
+    tab.service.put("add-default", CABLE)
+    tab.open("add-default")
+    tab.page.get_by_text("Add a force of any kind").click()
+    tab.page.get_by_label("Kind").select_option(label="Beam")
+    release = tab.page.get_by_label("Release start", exact=True)
+    assert release.locator("option").first.inner_text() == "default: none"
+    assert tab.page.get_by_label("Release end", exact=True).locator("option").first.inner_text() == "default: none"

@@ -74,6 +74,19 @@ def number(text: str, after: str) -> float:
     return float(found[1])
 
 
+@pytest.mark.slow
+def test_what_may_vary_is_listed_below_its_heading(cable: Studio):
+    """In the whole width of the panel, as near to the heading as the next entry is to the first (8 px)."""
+    vary(cable, "cable rest factor")
+    part = cable.page.get_by_role("region", name="What may vary")
+    head, entry, all_ = (
+        one.bounding_box() for one in (part.get_by_role("heading"), part.get_by_role("group").first, part)
+    )
+    assert head and entry and all_
+    assert entry["y"] - (head["y"] + head["height"]) == pytest.approx(8, abs=1)
+    assert (entry["x"], entry["width"]) == pytest.approx((all_["x"], all_["width"]), abs=1)
+
+
 def test_a_sag_is_asked_for_by_slider_and_its_values_are_used(cable: Studio):
     """The rest factor for a sag: the panel reports what Python finds and follows the slider; one Undo takes it back."""
     page, service, key = cable.page, cable.service, cable.key

@@ -70,6 +70,86 @@ def test_the_eye_stays_where_it_is_after_a_drag(cable: Studio):
     assert np.abs(np.subtract(cable.place(9), stays)).max() < 1.0
 
 
+AT_ONCE = """([button, particle, across]) => {
+    const canvas = document.querySelector("canvas");
+    const { x, y } = window.hookean.project(particle);
+    const told = { pointerId: 1, isPrimary: true, clientY: y, bubbles: true };
+    const fire = (kind, clientX) => canvas.dispatchEvent(new PointerEvent(kind, { ...told, clientX }));
+    [...document.querySelectorAll("button")].find((one) => one.textContent.trim() === button).click();
+    for (const [kind, at] of [["down", x], ["move", x + across], ["up", x + across]]) fire(`pointer${kind}`, at);
+}"""
+
+
+@pytest.mark.slow
+def test_an_anchor_that_undo_brings_back_stays_one_when_it_is_dragged_at_once(cable: Studio):
+    """The page has not read of it yet: a drag that takes it for a free particle would release it at its end."""
+    key, service, page = cable.key, cable.service, cable.page
+    held = lambda: {i for anchor in service.anchors(key) for i in anchor["particles"]}  # noqa: E731
+    page.get_by_label("Particle number").fill("0")
+    page.keyboard.press("Enter")
+    cable.press("Release")
+    cable.until(lambda: 0 not in held())
+    page.get_by_role("button", name="Pin", exact=True).wait_for()
+    cable.place(0)
+    page.evaluate(AT_ONCE, ["Undo", 0, 40])
+    cable.until(lambda: service.summary(key)["undo"] == 1, what="the drag")
+    cable.settled()
+    assert 0 in held()
+
+
+BETWEEN = """async () => {
+    const canvas = document.querySelector("canvas");
+    const named = (name) => [...document.querySelectorAll("button")].find((one) => one.textContent.trim() === name);
+    const pause = (time = 0) => new Promise((done) => setTimeout(done, time));
+    for (let i = 0; i < 60; i++) {
+        const { x, y } = window.hookean.project(0);
+        named(i % 2 ? "Redo" : "Undo").click();
+        for (let last = performance.now() + 500; performance.now() < last; await pause()) {
+            if (window.hookean.particles().length) continue;
+            const told = { pointerId: 1, isPrimary: true, clientX: x, clientY: y, bubbles: true };
+            canvas.dispatchEvent(new PointerEvent("pointerdown", told));
+            const { cursor } = canvas.style;
+            canvas.dispatchEvent(new PointerEvent("pointerup", told));
+            return cursor;
+        }
+        await pause(100);
+    }
+    return "the page was never between two topologies";
+}"""
+
+
+@pytest.mark.slow
+def test_an_anchor_is_taken_between_a_topology_and_its_picture(cable: Studio):
+    """Undo of what was drawn gives another topology: a press before its first picture takes the anchor all the same."""
+    key, service = cable.key, cable.service
+    service.edit(key, {"draw": {"add": {"points": [[3, 0, 2]]}}})
+    cable.until(lambda: len(cable.particles()) == 12)
+    cable.place(0)
+    assert cable.page.evaluate(BETWEEN) == "grabbing"
+
+
+TYPED = """(told) => {
+    const fields = [...document.querySelectorAll('[aria-label="Position of particle 0"] input')];
+    fields.forEach((field, i) => {
+        field.value = told[i];
+        for (const kind of ["input", "change"]) field.dispatchEvent(new Event(kind, { bubbles: true }));
+    });
+}"""
+
+
+@pytest.mark.slow
+def test_coordinates_typed_one_after_the_other_are_all_kept(cable: Studio):
+    """The page reads where an anchor is held after each edit: the next coordinate does not bring back the old ones."""
+    service, page = cable.service, cable.page
+    page.get_by_label("Particle number").fill("0")
+    page.keyboard.press("Enter")
+    page.get_by_role("group", name="Position of particle 0").get_by_role("spinbutton").first.wait_for()
+    page.evaluate(TYPED, ["-1", "0.5", "0.25"])
+    cable.settled()
+    [held] = [anchor for anchor in service.anchors(cable.key) if 0 in anchor["particles"]]
+    assert held["targets"][held["particles"].index(0)] == [-1.0, 0.5, 0.25]
+
+
 WATCHED = """() => {
     window.missing = 0;
     const look = () => {

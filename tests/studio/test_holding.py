@@ -50,3 +50,31 @@ def test_a_closed_form_is_held_where_it_stands(tab: Studio):
     tab.press("Hold the lowest particles")
     [held] = tab.until(lambda: tab.service.anchors("hold-cube"))
     assert {held["targets"][i][2] for i in range(len(held["targets"]))} == {0.0} and len(held["particles"]) == 4
+
+
+THRICE = """() => new Promise((done) => {
+    const button = [...document.querySelectorAll("button")].find((one) => one.textContent === "Move the held ones");
+    const press = (left) => left ? (button.click(), setTimeout(press, 30, left - 1)) : done();
+    press(3);
+})"""
+
+
+@pytest.mark.slow
+def test_held_particles_move_once_for_each_press(tab: Studio):
+    """Presses that follow each other faster than the page reads where the anchors are: each that it takes moves them
+    on, so that the way is as many steps as edits were made."""
+    mesh = {name: rows.tolist() for name, rows in vars(grid(np.arange(SIDE), np.arange(SIDE))).items()}
+    springs = {"kind": "springs", "mesh": "net"}
+    held = {"particles": mesh["vertices"], "anchors": [{"particles": [0]}]}
+    tab.service.put("move-thrice", {**held, "meshes": {"net": mesh}, "forces": [springs]})
+    tab.open("move-thrice")
+    tab.page.get_by_text("Select several").click()
+    tab.press("All")
+    tab.page.get_by_label("Move by z").fill("0.5")
+    tab.page.keyboard.press("Enter")
+    tab.page.evaluate(THRICE)
+    tab.settled()
+    [anchor] = tab.service.anchors("move-thrice")
+    made = tab.service.summary("move-thrice")["undo"]
+    assert made >= 2
+    assert anchor["targets"] == [[0.0, 0.0, 0.5 * made]]

@@ -106,6 +106,30 @@ def test_what_is_clicked_is_told_with_units(cable: Studio):
     assert f"{springs['force'][2]:.4g} N" in panel
 
 
+@pytest.mark.slow
+def test_a_spring_of_rest_length_0_has_no_strain(tab: Studio):
+    """Rest factor 0, a force density net: tension = k l (forces.md, springs), and (l - L0) / L0 is not defined."""
+    spring = {**CABLE["forces"][0], "rest_factor": 0.0}
+    tab.service.put("no-strain", {**CABLE, "forces": [spring, CABLE["forces"][1]]})
+    tab.open("no-strain")
+    tab.page.get_by_label("Spring number").fill("0")
+    tab.page.keyboard.press("Enter")
+
+    def told(name: str) -> str:
+        row = tab.page.locator("dl div", has=tab.page.get_by_text(name, exact=True))
+        return str(row.locator("dd").inner_text())
+
+    tab.until(lambda: told("Rest length") != "reading ...")
+    assert (told("Rest length"), told("Strain")) == ("0 m", "undefined: the rest length is 0")
+    assert told("Force") == "2000 N tension"  # 1000 N/m, 2 m
+    legend = tab.page.get_by_role("group", name="Legend")
+    tab.page.get_by_role("radio", name="Strain", exact=True).check()
+    legend.get_by_text("Strain: undefined, the rest lengths are 0").wait_for()
+    legend.get_by_text("Force").wait_for(state="detached")  # the springs are grey
+    tab.page.get_by_role("radio", name="Force", exact=True).check()
+    legend.get_by_text("Force: all equal").wait_for()
+
+
 def test_a_particle_is_pinned_and_released(cable: Studio):
     page, service, key = cable.page, cable.service, cable.key
     page.get_by_label("Particle number").fill("2")

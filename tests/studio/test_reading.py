@@ -26,6 +26,8 @@ from .service import Service
 pytestmark = pytest.mark.slow
 SHOWN = 6e-4
 """Relative: panels print four digits."""
+LEGEND = 5e-3
+"""Relative: the legend prints three digits."""
 
 
 def roof() -> dict[str, Any]:
@@ -67,6 +69,16 @@ def number(text: str) -> float:
     found = re.search(r"-?\d[\d.]*(?:e-?\d+)?", text)
     assert found, text
     return float(found[0])
+
+
+def loads(result: hookean.Result) -> np.ndarray:
+    """What acts on each particle, a load on a face in even parts on its corners [force]."""
+    sums = np.zeros_like(result.particles)
+    for force, shape in zip(result.forces, result.scene.forces, strict=True):
+        if shape.role == "load":
+            corners = np.asarray(force["particles"])
+            np.add.at(sums, corners, (force["force"] / corners.shape[1])[:, None])
+    return sums
 
 
 def test_the_surface_is_coloured_and_its_extremes_are_those_of_python(studio: Studio):
@@ -112,9 +124,15 @@ def test_load_cases_are_solved_and_the_largest_values_listed(studio: Studio):
     assert shown == pytest.approx(100 * np.array(used), rel=SHOWN)
     assert all(cells[-1] == "ULS" for cells in rows.values())
 
+    legend = page.get_by_role("group", name="Legend")
+    # of the largest values of all cases, neither loads nor directions of reactions are known
+    studio.until(lambda: "up to" not in legend.inner_text(), what="no arrows")
     page.get_by_label("Show the case").select_option("ULS")
     page.get_by_role("radio", name="Utilisation").check()
-    page.get_by_role("group", name="Legend").get_by_text("Utilisation [%]").wait_for()
+    legend.get_by_text("Utilisation [%]").wait_for()
+    largest = np.linalg.norm(loads(truth.cases["ULS"].result), axis=1).max()
+    up_to = legend.get_by_text(re.compile(r"Load\s+up to")).inner_text()
+    assert number(up_to) == pytest.approx(largest, rel=LEGEND)
     page.get_by_label("Show the case").select_option("form")  # bears no case, so it has no utilisation
     page.get_by_role("radio", name="Utilisation").wait_for(state="detached")
     page.get_by_role("group", name="Legend").get_by_text("Force [kN]").wait_for()
@@ -122,6 +140,22 @@ def test_load_cases_are_solved_and_the_largest_values_listed(studio: Studio):
     page.get_by_role("group", name="Legend").get_by_text("Utilisation [%]").wait_for()
     drawn = truth.cases["ULS"].result.particles
     studio.until(lambda: np.abs(studio.particles() - drawn).max() < 1e-4)
+    # what is written on the canvas is of the case, too, and the panel of what is picked is not
+    page.get_by_label("Spring number").fill("0")
+    page.keyboard.press("Enter")
+    page.get_by_text("Present values. The canvas shows: ULS.").wait_for()
+    page.get_by_label("Labels", exact=True).select_option("forces")
+    written = page.get_by_role("img", name="Written beside the form")
+    force = truth.cases["ULS"].result.forces[0]["force"][0]
+    assert number(written.locator("text").text_content() or "") == pytest.approx(force, rel=LEGEND)
+    page.get_by_label("Particles to measure").evaluate("(one) => (one.closest('details').open = true)")
+    page.get_by_label("Particles to measure").fill("0 12")
+    measured = page.get_by_role("img", name="Measured lengths").locator("text").first
+    assert number(measured.text_content() or "") == pytest.approx(np.linalg.norm(drawn[12] - drawn[0]), rel=SHOWN)
+    page.get_by_label("Particles to measure").fill("")
+    page.get_by_label("Labels", exact=True).select_option("none")
+    page.get_by_label("Spring number").fill("")
+    page.keyboard.press("Enter")
     before = studio.service.summary(studio.key)["revision"]
     studio.drag(0, 40, -60)  # turns the view: what is not of now cannot be moved
     assert studio.service.summary(studio.key)["revision"] == before

@@ -114,8 +114,20 @@ def test_a_name_is_one_that_an_address_can_have():
 
 def test_a_deleted_session_is_reported(shown: hookean.View, service: Service):
     service.client.delete("/v1/sessions/from-python")
-    with pytest.raises(ConnectionError, match="session"):
-        _ = shown.pick
+    for use in (lambda: shown.pick, lambda: shown.update(CABLE), lambda: shown.update(values=[1, 2, 3, 4, 5])):
+        with pytest.raises(ConnectionError, match=r"session from-python was deleted; show the scene again"):
+            use()
+    assert service.client.get("/v1/sessions/from-python").status_code == 404
+
+
+def test_a_page_whose_session_was_deleted_shows_the_next_one_of_its_name(tab: Studio, shown: hookean.View):
+    """The same name shows the next scene in the same page, a view that was closed before or not."""
+    tab.open("from-python")
+    shown.close()
+    tab.page.get_by_text("This session was deleted").wait_for()
+    again = hookean.show({**CABLE, "particles": [[x, 1, 0] for x in range(6)]}, name="from-python", browser=False)
+    tab.rests_at(again.particles)
+    tab.page.get_by_text("This session was deleted").wait_for(state="detached")
 
 
 @pytest.mark.soak

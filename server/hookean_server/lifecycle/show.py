@@ -32,7 +32,7 @@ def show(scene: Shown, name: str, browser: bool | None) -> View:
         raise ConnectionError(str(error)) from None
     found = find(folder()) or _started()
     page = Page(found, name or f"python-{secrets.token_hex(6)}")
-    page.update(scene)
+    page.begin(scene)
     if browser or (browser is None and not _is_notebook()):
         _open(found, page)
     return page

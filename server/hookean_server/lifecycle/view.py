@@ -86,6 +86,10 @@ class Page(View):
             self._callbacks.append(callback)
         return callback
 
+    def begin(self, scene: Shown) -> None:
+        """Make the session, or show this in the one that has its key."""
+        self._put(resumed(scene) if isinstance(scene, Result) else scene)
+
     def update(
         self,
         scene: Shown | None = None,
@@ -97,6 +101,7 @@ class Page(View):
     ) -> None:
         if scene is None and positions is None and values is None:
             raise InputError("update", "nothing is given; give a scene, positions or values")
+        self._ask("GET", self._path)  # a session that was deleted is not made again
         if isinstance(scene, Result):
             scene = resumed(scene)
         if positions is not None:
@@ -172,6 +177,8 @@ class Page(View):
         status, answer = self._request(method, path, body, kind)
         if status < 400:
             return answer
+        if status == 404:
+            raise ConnectionError(f"The session {self.key} was deleted; show the scene again with hookean.show.")
         for error in answer.get("errors", []):
             raise InputError(error["pointer"], error["detail"])
         raise ConnectionError(str(answer.get("detail")))

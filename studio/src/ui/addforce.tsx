@@ -149,7 +149,7 @@ export function Input({ field, value, put }: Typed) {
       <select aria-label={titled(field.name)} value={value} onChange={(event) => put(event.currentTarget.value)}>
         {["", ...choices].map((choice) => (
           <option key={choice} value={choice}>
-            {choice || `default: ${String(field.default ?? "none")}`}
+            {choice || `default: ${String(field.default ?? "") || "none"}`}
           </option>
         ))}
       </select>

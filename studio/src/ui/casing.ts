@@ -6,7 +6,11 @@ import type { Point, Result, Topology } from "../model";
 import type { Session } from "../session";
 import { springColumn } from "../variants";
 import type { Given, Options } from "../view/types";
+import { loaded } from "../view/spread";
 import { said } from "./words";
+
+/** Those of all cases together. */
+const NO_LOADS = { particles: new Int32Array(), vectors: new Float32Array(), isSpread: false };
 
 interface Extremes {
   smallest: number[];
@@ -149,9 +153,14 @@ export class Casing {
     }
     const one = solved.cases.find((found) => found.name === name);
     const frame = (this.own = frameOf(solved, one ?? null, topology.value!, factor));
+    if (name === ENVELOPE) {
+      frame.reactions.fill(0); // the largest of all cases have no directions
+      frame.springForces = colours(solved, name, "force", topology.value!)!.values;
+    }
     const scaled = one && factor !== 1 ? `, displacements x ${said(factor)}` : "";
     const called = name === FORM ? "Form" : name === ENVELOPE ? "Form with the largest values of all cases" : name;
-    this.options.still.value = { frame, said: `${called}${scaled}` };
+    const loads = name === ENVELOPE ? NO_LOADS : loaded(one?.result ?? solved.form, topology.value!);
+    this.options.still.value = { frame, said: `${called}${scaled}`, loads };
     const given = colours(solved, name, column, topology.value!);
     if (given) {
       this.coloured = true;

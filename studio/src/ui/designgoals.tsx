@@ -30,7 +30,7 @@ export function Goals({ studio }: { studio: Studio }) {
     <section class="part" aria-label="Goals">
       <h3>Goals</h3>
       {goals.map((goal, i) => (
-        <fieldset key={goal.name} class="entry" aria-label={`Goal ${goal.name}`}>
+        <fieldset key={goal.name} class="item" aria-label={`Goal ${goal.name}`}>
           <legend>{goal.name}</legend>
           <label class="field">
             <span>Asks for</span>
@@ -74,7 +74,7 @@ export function Constraints({ studio }: { studio: Studio }) {
     <section class="part" aria-label="Constraints">
       <h3>Constraints</h3>
       {constraints.map((limit, i) => (
-        <fieldset key={limit.name} class="entry" aria-label={`Constraint ${limit.name}`}>
+        <fieldset key={limit.name} class="item" aria-label={`Constraint ${limit.name}`}>
           <legend>{limit.name}</legend>
           <Ends of={limit} scene={session.scene.value!} put={(part) => put(i, part)} />
           <Remove

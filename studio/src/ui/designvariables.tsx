@@ -51,7 +51,7 @@ export function Variables({ studio }: { studio: Studio }) {
           />
         );
         return (
-          <fieldset key={variable.name} class="entry">
+          <fieldset key={variable.name} class="item">
             <legend>{variable.name}</legend>
             {bound("lower", "At least", "no bound")}
             {bound("upper", "At most", "no bound")}

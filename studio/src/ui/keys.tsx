@@ -1,6 +1,6 @@
 // What keys do on the page of a session, and the list of them.
 import { useEffect, useRef } from "preact/hooks";
-import { holder, pin, release } from "../hand";
+import { holder, inTurn, pin, release } from "../hand";
 import { deleted } from "../drawing/change";
 import { LOOKS } from "./see";
 import type { Studio } from "./studio";
@@ -119,5 +119,6 @@ function obeyed(studio: Studio, event: KeyboardEvent): boolean {
 function hold({ session, options }: Studio): void {
   const picked = options.picked.value;
   if (picked?.kind !== "particle") return;
-  void (holder(session.anchors.value, picked.index) ? release : pin)(session, picked.index);
+  const { index } = picked;
+  inTurn(async () => (holder(await session.anchorsOfNow(), index) ? release : pin)(session, index));
 }

@@ -2,6 +2,7 @@
 import { useSignal } from "@preact/signals";
 import { useEffect } from "preact/hooks";
 import type { Point } from "../model";
+import { shownFrame } from "./still";
 import type { Studio } from "./studio";
 import { numbered } from "./targets";
 import { measured, said } from "./words";
@@ -14,7 +15,7 @@ export function Measure({ studio }: { studio: Studio }) {
   void session.ticks.value;
   const text = useSignal("");
   const fault = useSignal("");
-  const [frame, topology] = [session.frame, session.topology.value];
+  const [frame, topology] = [shownFrame(studio), session.topology.value];
   const chain = options.measured.value;
   const measure = (given: string) => {
     text.value = given;
@@ -96,7 +97,8 @@ export function Measure({ studio }: { studio: Studio }) {
 }
 
 /** Over the canvas: lines that are measured with their lengths, and numbers of particles. */
-export function Labels({ studio: { session, options, view } }: { studio: Studio }) {
+export function Labels({ studio }: { studio: Studio }) {
+  const { session, options, view } = studio;
   void session.ticks.value;
   const turned = useSignal(0);
   const now = view.value;
@@ -105,13 +107,14 @@ export function Labels({ studio: { session, options, view } }: { studio: Studio 
   const chain = options.measured.value;
   const shown = options.numbers.value ? options.marked.value.slice(0, MOST) : [];
   const canvas = document.querySelector(".drawing")?.getBoundingClientRect();
-  if (!now || !session.frame || !canvas || (chain.length < 2 && !shown.length)) return null;
+  const frame = shownFrame(studio);
+  if (!now || !frame || !canvas || (chain.length < 2 && !shown.length)) return null;
   const place = (particle: number) => {
     const seen = now.project(particle);
     return seen && { x: seen.x - canvas.left, y: seen.y - canvas.top };
   };
   const unit = session.topology.value?.units.length ?? "";
-  const { positions } = session.frame;
+  const { positions } = frame;
   return (
     <svg class="labels" role="img" aria-label="Measured lengths and numbers of particles">
       {chain.slice(1).map((to, i) => {

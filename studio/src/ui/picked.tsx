@@ -1,5 +1,5 @@
 // The picked particle or spring in numbers; both can be picked by number, too.
-import { Grip, holder, pin, release } from "../hand";
+import { Grip, holder, inTurn, pin, release } from "../hand";
 import type { Anchor, Point } from "../model";
 import type { Session } from "../session";
 import type { View } from "../view/types";
@@ -36,6 +36,9 @@ export function PickedPanel({ studio }: { studio: Studio }) {
         {number("particle", "Particle", topology?.particles ?? 0)}
         {number("spring", "Spring", topology?.springs.length ?? 0)}
       </div>
+      {picked && options.still.value && (
+        <p class="note">Present values. The canvas shows: {options.still.value.said}.</p>
+      )}
       {!picked && <p class="faint">Click a particle or a spring, or give its number.</p>}
       {picked?.kind === "particle" && <Particle key={picked.index} studio={studio} index={picked.index} />}
       {picked?.kind === "spring" && <Spring key={picked.index} studio={studio} index={picked.index} />}
@@ -94,6 +97,16 @@ function Particle({ studio, index }: Shown) {
   );
 }
 
+/** To a coordinate; one that is typed quickly after another keeps that one. */
+async function moved(session: Session, index: number, axis: number, to: number): Promise<void> {
+  const held = holder(await session.anchorsOfNow(), index);
+  const now = held?.targets[held.particles.indexOf(index)];
+  if (!now) return;
+  const grip = new Grip(session, index);
+  grip.lead(now.map((old, other) => (other === axis ? to : old)) as Point);
+  await grip.drop();
+}
+
 /** The position of a particle, which can be typed if it is held. */
 function Position({
   studio: { session },
@@ -104,12 +117,7 @@ function Position({
 }: Shown & { at: Point | null; anchor: Anchor | undefined; stale: boolean }) {
   const unit = session.topology.value?.units.length ?? "";
   const move = (axis: number) => (to: number | null) => {
-    const now = anchor?.targets[anchor.particles.indexOf(index)];
-    if (to === null || !now) return;
-    const target = now.map((old, other) => (other === axis ? to : old)) as Point;
-    const grip = new Grip(session, index);
-    grip.lead(target);
-    void grip.drop();
+    if (to !== null) inTurn(() => moved(session, index, axis, to));
   };
   return (
     <div class="components" role="group" aria-label={`Position of particle ${index}`}>

@@ -94,14 +94,12 @@ function restLengths(result: Result, topology: Topology): Float32Array {
   return Float32Array.from(topology.spring_forces, (number) => {
     const place = next.get(number) ?? 0;
     next.set(number, place + 1);
-    const { length, strain } = (result.forces[number] ?? {}) as { length?: number[]; strain?: (number | null)[] };
-    const stretched = strain?.[place];
-    // a rest length of 0 has no strain
-    return length?.[place] === undefined || stretched === undefined
-      ? NaN
-      : stretched === null
-        ? 0
-        : length[place] / (1 + stretched);
+    const { length, strain, force } = (result.forces[number] ?? {}) as Partial<Record<string, (number | null)[]>>;
+    const [long, stretched] = [length?.[place], strain?.[place]];
+    if (typeof long !== "number" || stretched === undefined) return NaN;
+    // a rest length of 0 has no strain, which the result writes as 0
+    const isNone = stretched === null || (stretched === 0 && force?.[place] !== 0);
+    return isNone ? 0 : long / (1 + stretched);
   });
 }
 

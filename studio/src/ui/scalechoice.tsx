@@ -19,8 +19,8 @@ export function ScaleChoice({ studio: { options, session } }: { studio: Pick<Stu
       seen={seen}
       value={scale[which]}
       unit={unit}
-      hint="Values beyond have the colour of the end and are counted in the legend; empty: found by itself"
-      placeholder="found"
+      hint="Values beyond have the colour of the end and are counted in the legend; empty: automatic"
+      placeholder="automatic"
       bounds={scale.kind === "log" ? { more_than: 0 } : undefined}
       done={(value) => change({ [which]: value })}
     />

@@ -151,10 +151,13 @@ export function LegendBox({ studio: { view, session, options } }: { studio: Stud
   const stale = session.connection.value !== "live";
   const variant = options.ghost.value;
   const faces = view.value?.faces.value;
-  if (!legend && !faces && !load && !reaction && !variant) return null;
+  const { colouring, restLengths } = options;
+  const isUndefined = colouring.value === "strain" && restLengths.value?.every((rest) => rest === 0);
+  if (!legend && !faces && !load && !reaction && !variant && !isUndefined) return null;
   return (
     <div class={stale ? "legend stale" : "legend"} role="group" aria-label="Legend">
       {variant && <Overlaid name={variant.name} own={legend?.colours ?? [colours.plain]} colour={colours.variant} />}
+      {isUndefined && <p>Strain: undefined, the rest lengths are 0</p>}
       {legend && <Ramp legend={legend} mark={() => (options.marked.value = view.value?.beyond() ?? [])} />}
       {faces && <Ramp legend={faces} mark={() => (options.marked.value = view.value?.facesBeyond() ?? [])} />}
       {loads && load > 0 && <Arrow name="Load" size={load} unit={force} colour={colours.load} />}

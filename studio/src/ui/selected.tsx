@@ -1,5 +1,6 @@
 // Several particles at once: found by a box, a lasso, a row of springs or a range of forces; held, moved, named.
 import { useSignal } from "@preact/signals";
+import { inTurn } from "../hand";
 import type { Anchor, Point, Scene, Topology } from "../model";
 import { between, endsOf, rim, row } from "../view/sets";
 import type { Element } from "../view/types";
@@ -184,13 +185,13 @@ function Acts({ studio: { session }, chosen }: { studio: Studio; chosen: number[
   const shift = useSignal<Point>([0, 0, 0]);
   const held = new Set(session.anchors.value.flatMap((anchor) => anchor.particles));
   const [fixed, able] = [chosen.filter((one) => held.has(one)), !busy && session.connection.value === "live"];
-  const move = () => {
-    const pins = session.anchors.value.flatMap((anchor) => {
+  const move = async () => {
+    const pins = (await session.anchorsOfNow()).flatMap((anchor) => {
       const rows = anchor.particles.map((_, i) => i).filter((i) => fixed.includes(anchor.particles[i]!));
       const targets = rows.map((i) => anchor.targets[i]!.map((x, axis) => x + shift.value[axis]!) as Point);
       return rows.length ? [{ particles: rows.map((i) => anchor.particles[i]!), targets, axes: anchor.axes }] : [];
     });
-    void make({ pin: pins }, `${counted(fixed.length, "held particle")} moved; Undo takes it back.`);
+    await make({ pin: pins }, `${counted(fixed.length, "held particle")} moved; Undo takes it back.`);
   };
   const unit = session.topology.value?.units.length ?? "";
   return (
@@ -248,7 +249,7 @@ function Acts({ studio: { session }, chosen }: { studio: Studio; chosen: number[
         class="small"
         title="Selected particles that are held go so far; Solve finds the form of the others"
         disabled={!able || !fixed.length}
-        onClick={move}
+        onClick={() => inTurn(move)}
       >
         Move the held ones
       </button>

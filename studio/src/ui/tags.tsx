@@ -6,6 +6,7 @@ import { endsOf } from "../view/sets";
 import type { Tags } from "../view/types";
 import { kinds } from "./catalogue";
 import { titleOf } from "./forces";
+import { shownFrame } from "./still";
 import type { Studio } from "./studio";
 import { said } from "./words";
 
@@ -55,7 +56,7 @@ export function TagLabels({ studio }: { studio: Studio }) {
   useEffect(() => (isOn ? now?.onMoved(() => (turned.value += 1)) : undefined), [now, isOn]);
   void turned.value;
   const canvas = document.querySelector(".drawing")?.getBoundingClientRect();
-  if (!isOn || !now || !session.frame || !canvas) return null;
+  if (!isOn || !now || !shownFrame(studio) || !canvas) return null;
   const tags = options.tags.value === "names" ? names(studio) : numbers(studio);
   const placed: { x: number; y: number; tag: Tag }[] = [];
   const section = options.section.value;
@@ -85,8 +86,9 @@ export function TagLabels({ studio }: { studio: Studio }) {
 }
 
 /** Names in the middle of what they are of. */
-function names({ session, options }: Studio): Tag[] {
-  const [topology, scene, frame] = [session.topology.value, session.scene.value, session.frame];
+function names(studio: Studio): Tag[] {
+  const { session, options } = studio;
+  const [topology, scene, frame] = [session.topology.value, session.scene.value, shownFrame(studio)];
   if (!topology || !scene || !frame) return [];
   const all: [string, number[], string?][] = [
     ...Object.entries(options.groups.value).map(([name, of]): [string, number[], string?] => [
@@ -113,8 +115,9 @@ function names({ session, options }: Studio): Tag[] {
 }
 
 /** A number of each spring, in its middle: of those that are picked or selected, else of all. */
-function numbers({ session, options }: Studio): Tag[] {
-  const [topology, frame] = [session.topology.value, session.frame];
+function numbers(studio: Studio): Tag[] {
+  const { session, options } = studio;
+  const [topology, frame] = [session.topology.value, shownFrame(studio)];
   if (!topology || !frame) return [];
   const { picked, marked, tags } = options;
   const selected = new Set(marked.value);

@@ -1,5 +1,7 @@
 // The loads that act now: those of the topology, as edits of their forces have changed them since it was read.
 import type { Point, Scene, Topology } from "../model";
+import type { Session } from "../session";
+import type { Options } from "./types";
 
 export interface Acting {
   /** Those that are loaded. */
@@ -8,6 +10,12 @@ export interface Acting {
   vectors: Float32Array;
   /** Whether faces or lines bear some of them. */
   isSpread: boolean;
+}
+
+/** The loads that are drawn: those of what is shown in the place of the present shape, where it has its own. */
+export function borne(session: Session, { still, spread }: Options): Acting | null {
+  const [topology, scene, own, others] = [session.topology.peek(), session.scene.value, still.value, spread.value];
+  return topology && (own?.loads ?? acting(topology, scene, others));
 }
 
 type Load = Topology["loads"][number];

@@ -23,6 +23,7 @@ export class Scaling {
 
   forget(): void {
     this.found.forget();
+    this.outliers = -1; // not counted: the legend changes with the next numbers, be they none
   }
 
   due(now: number): boolean {

@@ -30,13 +30,21 @@ export function* shares(result: Result, topology: Topology): Generator<Share> {
 }
 
 /** The sums of what faces and lines bear; the topology itself has the loads on single particles. */
-export function spread(result: Result, topology: Topology): Acting {
+export const spread = (result: Result, topology: Topology) => summed(result, topology, 2);
+
+/** The sums of all loads of a result. */
+export const loaded = (result: Result, topology: Topology) => summed(result, topology, 1);
+
+/** The sums of loads on elements of so many particles at least. */
+function summed(result: Result, topology: Topology, least: number): Acting {
   const sums = new Map<number, Point>();
+  let isSpread = false;
   for (const { particle, vector, corners } of shares(result, topology)) {
-    if (corners < 2) continue;
+    if (corners < least) continue;
+    isSpread ||= corners > 1;
     const sum = sums.get(particle) ?? [0, 0, 0];
     sums.set(particle, [sum[0] + vector[0], sum[1] + vector[1], sum[2] + vector[2]]);
   }
   const vectors = Float32Array.from([...sums.values()].flat());
-  return { particles: Int32Array.from(sums.keys()), vectors, isSpread: sums.size > 0 };
+  return { particles: Int32Array.from(sums.keys()), vectors, isSpread };
 }

@@ -67,6 +67,8 @@ export interface Painted {
 export interface Still {
   frame: Frame;
   said: string;
+  /** What acts on it, where that is not what acts now. */
+  loads?: Acting;
 }
 
 /** Which number a colour stands for. */

@@ -1,10 +1,10 @@
 // The view of a session: what is on the canvas. A picture is drawn only when something has changed.
-import { effect, signal } from "@preact/signals";
+import { effect, signal, untracked } from "@preact/signals";
 import { type PerspectiveCamera, Vector3 } from "three";
 import type { Frame } from "../frame";
 import type { Session } from "../session";
 import { note, stats } from "../stats";
-import { acting } from "./acting";
+import { borne } from "./acting";
 import { Eye, type Place as From } from "./camera";
 import { Hand, type Held } from "./dragging";
 import { enclosed } from "./faces";
@@ -215,7 +215,7 @@ class Drawing implements View {
     if (!topology) return;
     const { picture, session, options } = this;
     picture.build(form(topology));
-    picture.bear(acting(topology, session.scene.peek(), options.spread.peek()));
+    picture.bear(untracked(() => borne(session, options))!);
     picture.hold(session.anchors.peek());
     picture.know(options.restLengths.peek());
     this.ghost.put(options.ghost.peek(), true);
@@ -257,6 +257,7 @@ class Drawing implements View {
 
   private searched(): Searched | null {
     const { picture, stage, eye, options } = this;
+    if (!this.drawn) this.draw(false); // a press may come between another topology and its picture
     if (!this.drawn || !picture.form) return null;
     const { mesh, springs } = options.layers.value;
     return {
@@ -313,10 +314,9 @@ class Drawing implements View {
         this.ask();
       }),
       effect(() => {
-        const [scene, spread] = [session.scene.value, options.spread.value];
-        const topology = session.topology.peek();
-        if (!topology) return;
-        picture.bear(acting(topology, scene, spread));
+        const loads = borne(session, options);
+        if (!loads) return;
+        picture.bear(loads);
         this.dressed = 0;
         this.outdated = true;
         this.ask();
