@@ -135,10 +135,17 @@ export function bins(values: ArrayLike<number>, count: number): Bin[] {
   return found;
 }
 
+/** A number with no more digits than it has: frames have them in single precision. */
+function digits(value: number): string {
+  const isSingle = (text: string) => Math.fround(Number(text)) === value;
+  const shown = [6, 7, 8, 9].map((count) => value.toPrecision(count)).find(isSingle);
+  return String(shown ? Number(shown) : value);
+}
+
 /** A table in an order as CSV; units are in its first line. */
 export function csv(table: Table, order: number[]): string {
   const head = [table.kind, ...table.columns.map(({ name, unit }) => (unit ? `${name} [${unit}]` : name))];
-  const cell = (value: number) => (Number.isFinite(value) ? String(value) : "");
+  const cell = (value: number) => (Number.isFinite(value) ? digits(value) : "");
   const rows = order.map((i) => [table.rows[i]!, ...table.columns.map(({ values }) => values[i]!)].map(cell).join());
   return [head.join(), ...rows, ""].join("\r\n");
 }
