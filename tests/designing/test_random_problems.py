@@ -52,10 +52,10 @@ def test_what_has_no_answer_is_reported(twist: str, status: str) -> None:
 
 
 @pytest.mark.soak
-@pytest.mark.parametrize(("seed", "twist"), [(619, "scaled"), (362, "plain"), (8153, "contradictory")])
+@pytest.mark.parametrize(("seed", "twist"), [(619, "scaled"), (362, "plain"), (8153, "contradictory"), (160, "plain")])
 def test_answers_in_narrow_valleys_and_far_from_the_start_are_true(seed: int, twist: str) -> None:
-    """Where slopes of goals nearly cancel on a long way down, where a stiffness grows to thousands of its size, and
-    where what is left of a goal is rounding."""
+    """Where slopes of goals nearly cancel on a long way down, where a stiffness grows to thousands of its size, where
+    what is left of a goal is rounding, and at the edge of a snap, where slopes are steep and no step leads on."""
     checked(seed, twist)
 
 

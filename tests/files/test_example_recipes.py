@@ -21,13 +21,14 @@ RECIPES = [p for p in sorted(home().glob("*/recipe*.toml")) if f"{p.parent.name}
 @pytest.mark.slow
 @pytest.mark.parametrize("recipe", sampled(RECIPES, 3), ids=lambda p: f"{p.parent.name}/{p.stem}")
 def test_a_recipe_of_the_examples_gives_a_table_and_a_file(recipe: Path, tmp_path: Path):
-    """Every element and reaction has its row, every number of it a unit, and nothing is noted on strain."""
+    """Every element, reaction and contact with a floor has its row, every number of it a unit, and nothing is noted
+    on strain."""
     found = relax_file(recipe.parent / "model.3dm", tmp_path / "out.3dm", recipe.read_text(encoding="utf-8"))
     assert found.result.converged
     table = list(csv.DictReader(io.StringIO(found.csv)))
-    assert len(table) == sum(len(f.get("particles", ())) for f in found.result.forces) + len(
-        found.result.reactions["particles"]
-    )
+    result = found.result
+    held = len(result.reactions["particles"]) + len(result.contacts["particles"])
+    assert len(table) == sum(len(force.get("particles", ())) for force in result.forces) + held
     assert all(
         "[" in head for head in table[0] if head not in ("id", "name", "layer", "force", "kind", "element", "particles")
     )

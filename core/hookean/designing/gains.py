@@ -27,6 +27,7 @@ NEAR = 1e-5  # part of the size of a constraint's values: nearer to its limit it
 SLIGHT = 1e-4  # part of a goal by which it would fall with unknowns of twice their size: less is rounding
 SMALL = 1e-3  # part of the objective: slopes of goals that are met are less
 AGAINST = -0.5  # cosine between slopes from which on goals conflict
+STEEP = 1e-2  # part of the unknowns' sizes
 MOST = 400  # constraints that limit, above which no multipliers are worked out
 
 
@@ -98,17 +99,36 @@ def at_minimum(search: Search) -> bool:
     by the scale of the start, even on a long way down."""
     if search.best[0] <= 0.0 and search.best[1] <= search.met:
         return True
+    left = _left(search)
+    if left is None:
+        return False
+    whole, bounds, least, steepest = left
+    slight = np.sqrt(search.problem.settings.tolerance) * max(least, steepest)
+    return bool(whole.max(initial=0.0) <= slight and (bounds >= -slight).all())
+
+
+def is_steep(search: Search) -> bool:
+    """Whether the best so far is no minimum by far: by the slopes that nothing holds, a step of a hundredth of the
+    unknowns' sizes would take all of the objective. So it is at the edge of a snap, where no step leads on."""
+    left = _left(search)
+    if left is None:
+        return False
+    whole, _, least, steepest = left
+    return bool(STEEP * whole.max(initial=0.0) > max(least, abs(search.best[1]), STEEP**2 * steepest))
+
+
+def _left(search: Search) -> tuple[Floats, Floats, float, float] | None:
+    """At the best so far, by unknowns in parts of their sizes: slopes that neither bounds nor constraints hold, what
+    bounds gain, a slight slope, and the steepest of a goal; None without derivatives or with too many constraints."""
     y = search.best[2]
     found = search.at(y)
     gained = gains(search, found, y) if found.converged else None
     if gained is None:
-        return False
+        return None
     whole, bounds = gained.left.sum(axis=0), gained.bounds.sum(axis=0)
     steepest = float(np.abs(_goal_slopes(search, found)).max(initial=0.0))
     least = SMALL * max(search.first_value, abs(search.best[1]))
-    slight = np.sqrt(search.problem.settings.tolerance) * max(least, steepest)
-    whole = np.abs(whole) * np.maximum(1.0, np.abs(y))
-    return bool(whole.max(initial=0.0) <= slight and (bounds * search.scale >= -slight).all())
+    return np.abs(whole) * np.maximum(1.0, np.abs(y)), bounds * search.scale, least, steepest
 
 
 def _goal_slopes(search: Search, found: Equilibrium) -> Floats:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from hookean.designing.answer import DesignStatus
 from hookean.designing.augmented import augmented
 from hookean.designing.feasible import nearer, off_zero
-from hookean.designing.gains import at_minimum
+from hookean.designing.gains import at_minimum, is_steep
 from hookean.designing.levenberg import levenberg
 from hookean.designing.limits import AT_BOUND
 from hookean.designing.polish import polish
@@ -98,6 +98,8 @@ def _augmented(search: Search, taken: int = 0) -> Ended:
     iterations, ended = augmented(search, taken)
     if ended is DesignStatus.STALLED and at_minimum(search):
         ended = DesignStatus.CONVERGED
+    elif ended is DesignStatus.CONVERGED and is_steep(search):  # of a round, whose own end may be none
+        ended = DesignStatus.STALLED
     return iterations, ended, NO_STEP if ended is DesignStatus.STALLED else ""
 
 

@@ -32,9 +32,11 @@ from hookean.designing.summary import answer
 from hookean.designing.unknowns import Unknowns
 from hookean.errors import InputError
 from hookean.system.system import System
+from hookean.values.columns import LARGEST
 
 Floats = NDArray[np.float64]
 EDGE = 1e6  # of its size: no search goes further
+MOST = 0.5 * LARGEST  # nor beyond this value, whose differences are numbers that forces take
 LIMITS = 100  # values of constraints, four times as many where goals have no roots, above which SLSQP takes long
 FALL = 1e-6  # part of the objective that a search from elsewhere has to gain
 SLACK = 2e-6  # part of the objective, by which the best may seem better than where a method rests
@@ -97,9 +99,10 @@ class Search:
 
     @property
     def edges(self) -> tuple[Floats, Floats]:
-        """The same where nothing else keeps a search from going on without end."""
-        lower, upper = self.bounds
-        return np.maximum(lower, -EDGE), np.minimum(upper, EDGE)
+        """The same where nothing else keeps a search from going on without end, or to numbers that nothing takes."""
+        (lower, upper), start = self.bounds, self.unknowns.start
+        least, most = ((side * MOST - start) / self.scale for side in (-1.0, 1.0))
+        return np.maximum(lower, np.maximum(least, -EDGE)), np.minimum(upper, np.minimum(most, EDGE))
 
     def given(self, y: Floats) -> Floats:
         """Values (u,) of the unknowns; rounding does not take them beyond their bounds."""
