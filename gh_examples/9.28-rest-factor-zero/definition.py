@@ -91,7 +91,7 @@ def definition() -> Definition:
             "Settings", solver=d.text("Solver", "newton"), residual=d.text("Residual [-]", "1e-13"), fast=fast
         )
         relaxing = d.component(
-            "Settings", solver=d.text("Solver of films", "auto"),
+            "Settings", solver=d.text("Solver of films", "relaxation"),
             residual=d.text("Residual of films [-]", "1e-9"), fast=fast,
         )  # fmt: skip
         moved = []

@@ -22,7 +22,7 @@ sag_right = sag(held[third:])
 lift_third = lifts[2]
 lift_all = sum(lifts)
 sag_between = sag(stray)
-distances = re.findall(r"([0-9.e-]+) away", " ".join(said))
+distances = re.findall(r"([0-9.e-]+) m away", " ".join(said))
 distance = float(distances[0]) if distances else None
 """
 

@@ -84,6 +84,7 @@ def test_varied_definitions_come_to_rest(first: int, home: Home, tmp_path: Path)
         d = Varied(seed)
         if not (set(FREE) & set(d.told) or set(d.told) >= LOOSE):
             rests(d, tmp_path)
+    home.delete_sessions()
 
 
 @pytest.mark.soak
@@ -92,3 +93,4 @@ def test_a_net_with_any_goal_of_the_table_comes_to_rest(solver: str, home: Home,
     for seed, line in enumerate(GOALS):
         if not line.startswith(FREE):
             rests(Drawn(seed, tuple(dict.fromkeys([GOALS[1], GOALS[4], line])), solver), tmp_path)
+    home.delete_sessions()

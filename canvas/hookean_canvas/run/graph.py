@@ -12,13 +12,15 @@ from hookean.errors import InputError
 from hookean_canvas import archive
 from hookean_canvas.archive import Chunk, Type
 from hookean_canvas.archive import parts as chunks
-from hookean_canvas.archive.guids import GROUP, SCRIBBLE
+from hookean_canvas.archive.guids import BOOLEAN_TOGGLE, GROUP, NUMBER_SLIDER, PANEL, SCRIBBLE, VALUE_LIST
 from hookean_canvas.archive.parts import SCRIPTS, Part, Rectangle, bounds_of, given, sources
 from hookean_canvas.run.internalised import unreadable
 from hookean_canvas.run.stored import NOTHING, Unread, internalised_in, stored
 from hookean_canvas.run.trees import Tree, path_of
 
 NONE = UUID(int=0)
+HOLDING = (NUMBER_SLIDER, BOOLEAN_TOGGLE, PANEL, VALUE_LIST)
+"""Parameters that a person sets by hand."""
 """The library of what Grasshopper itself brings, in files of Rhino 8."""
 
 
@@ -203,9 +205,10 @@ def _group(container: Chunk) -> Group:
 
 
 def _node(guid: UUID, part: Part, container: Chunk, instead: UUID, refused: Mapping[bytes, str]) -> Node:
-    """An object; one without inputs and outputs that is no script is a parameter, such as a timer."""
+    """An object; one without inputs and outputs that is no script is a parameter, such as a timer, and so is one that
+    holds a value, whatever a damaged file says."""
     inputs, outputs = ([port(one, refused) for one in side(container)] for side in (chunks.inputs, chunks.outputs))
-    if chunks.is_floating(container) or not (inputs or outputs or guid in SCRIPTS):
+    if chunks.is_floating(container) or guid in HOLDING or not (inputs or outputs or guid in SCRIPTS):
         inputs = outputs = [port(container, refused)]
         inputs[0].id = part.id or instead
     return Node(
