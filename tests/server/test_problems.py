@@ -195,7 +195,9 @@ def test_large_bodies_do_not_stay_in_memory(served: Served) -> None:
 def test_large_headers(served: Served) -> None:
     problem(served.client.get("/v1/health", headers={"x": "y" * 17_000}), 431, "headers-too-large")
     problem(served.client.get("/v1/health?" + "y" * 17_000), 431, "headers-too-large")
-    assert raw(served, b"GET / HTTP/1.1\r\nX: " + b"y" * 200_000).startswith(b"HTTP/1.1 4")
+    for sent in (b"GET / HTTP/1.1\r\nX: " + b"y" * 200_000, b"GET /v1/health?" + b"y" * 200_000):
+        assert raw(served, sent).startswith(b"HTTP/1.1 431 Request Header Fields Too Large\r\n")
+    assert raw(served, b"\x00\x01\r\n\r\n").startswith(b"HTTP/1.1 400 Bad Request\r\n")
     assert served.health()["status"] == "ok"
 
 

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import asyncio
+import sys
 from contextlib import suppress
+from http import HTTPStatus
 from typing import Any, ClassVar
 
 import h11
@@ -165,14 +167,16 @@ class Connection(H11Protocol):
         super().resume_writing()
 
     def send_400_response(self, msg: str) -> None:
-        """Bytes that are not HTTP."""
-        problem = Problem("bad-request", "This is not an HTTP request, or its headers are too large.")
+        """Bytes that are not HTTP, or headers that have no end within what is read of them."""
+        problem = Problem("bad-request", "This is not an HTTP request.")
+        if getattr(sys.exception(), "error_status_hint", 400) == 431:
+            problem = Problem("headers-too-large", "The address and headers of this request are too large.")
         body = problem.body("urn:uuid:00000000-0000-0000-0000-000000000000")
         own = {"content-type": MEDIA_TYPE, "content-length": str(len(body)), "connection": "close", **ALWAYS}
         headers = [*self.server_state.default_headers, *((k.encode(), v.encode()) for k, v in own.items())]
         with suppress(h11.LocalProtocolError):
             for event in (
-                h11.Response(status_code=400, headers=headers, reason=b"Bad Request"),
+                h11.Response(status_code=problem.status, headers=headers, reason=HTTPStatus(problem.status).phrase),
                 h11.Data(data=body),
                 h11.EndOfMessage(),
             ):
