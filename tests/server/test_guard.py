@@ -366,7 +366,7 @@ def test_a_length_that_is_too_small_ends_the_connection(served: Served) -> None:
         except ConnectionError:
             pass
     assert said.startswith(b"HTTP/1.1 200") and said.count(b"HTTP/1.1 200") == 1
-    assert b"HTTP/1.1 400" in said and b"application/problem+json" in said
+    assert b"HTTP/1.1 431" in said and b"application/problem+json" in said
 
 
 def test_a_length_that_is_too_large_is_waited_for_in_vain(served: Served) -> None:
