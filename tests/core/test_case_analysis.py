@@ -140,7 +140,7 @@ def test_frequencies_and_mechanisms_of_a_case_are_those_of_its_result() -> None:
     assert (hookean.frequencies(scene, case="ULS").frequencies == hookean.frequencies(shape).frequencies).all()
     assert (hookean.frequencies(scene).frequencies != hookean.frequencies(shape).frequencies).any()
     assert hookean.mechanisms(scene, case="ULS").to_dict() == hookean.mechanisms(shape).to_dict()
-    with pytest.raises(InputError, match="case: 'ULS' given with a Result, which has its loads; give the scene"):
+    with pytest.raises(InputError, match="case: 'ULS' given with a Result; give the scene that has this case"):
         hookean.frequencies(shape, case="ULS")
     with pytest.raises(InputError, match="case: 'snow' is not a load case or combination; the scene has P, Q, ULS"):
         hookean.mechanisms(scene, case="snow")

@@ -174,7 +174,7 @@ def test_what_a_file_of_beams_cannot_hold_is_named(tmp_path: Path) -> None:
 
 def test_what_strains_far_from_the_points_of_the_start_is_named(tmp_path: Path) -> None:
     """A slack cable beside a mast: with a logarithmic strain from the points and the stress of the file, its force is
-    not that of the result, and saving says so. Drawn where it hangs, it has that force."""
+    not that of the result, which saving reports. Drawn where it hangs, it has that force."""
     drawn = [[0, 0, 0], [0, 0, 2], [2, 0, 2], [4, 0, 2]]
     spec: Spec = {
         "particles": drawn,

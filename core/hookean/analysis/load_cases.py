@@ -147,7 +147,7 @@ def of_case(model: Any, case: str | None) -> Any:
     if case is None:
         return model
     if not isinstance(model, Scene):
-        raise InputError("case", f"{case!r} given with a {type(model).__name__}, which has its loads; give the scene")
+        raise InputError("case", f"{case!r} given with a {type(model).__name__}; give the scene that has this case")
     return load_cases(model, wanted(model, [case], "case")).cases[case].result
 
 

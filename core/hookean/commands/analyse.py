@@ -94,11 +94,12 @@ def scene_of(source: Path, recipe: Path | None) -> Scene:
 def _chosen(options: Options, scene: Scene) -> dict[str, Callable[[Scene], Any]]:
     """The analyses that the options ask for, by the names of their sections."""
     import hookean
+    from hookean.analysis.load_cases import of_case
 
     loads, case = options.load, options.case
     plain = not (options.frequencies or options.buckling or options.load_path or options.mechanisms)
     at_rest = plain or options.frequencies or options.mechanisms
-    shape = scene if case is None or not at_rest else hookean.load_cases(scene, [case]).cases[case].result
+    shape = of_case(scene, case if at_rest else None)
     chosen: dict[str, Callable[[Scene], Any]] = {}
     if options.frequencies or plain:
         masses = "self_weight" if options.weight_masses else None
