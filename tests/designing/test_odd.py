@@ -14,6 +14,7 @@ from hookean.designing.problem import Problem
 from hookean.designing.search import Search, design
 from hookean.designing.unknowns import Unknowns
 from hookean.errors import InputError
+from hookean.forces.springs import Springs
 from hookean.scene.scene import Scene
 from hookean.system.system import compile
 from soak import SOAK
@@ -274,3 +275,27 @@ def test_a_column_is_at_least_0_where_the_force_refuses_less(kind: str, field: s
     except InputError:
         pass
     assert Unknowns(problem, compile(problem.scene)).lower[0] == wanted
+
+
+def test_a_start_near_the_largest_number_stays_between_its_bounds() -> None:
+    """Two bars of 8e11 N/m, where searches without bounds go no further than 5e11: a load F between them moves their
+    joint by F / (k1 + k2), here by that of 1.4e12 N/m together."""
+    scene = {
+        "particles": [[0, 0, 0], [1, 0, 0], [2, 0, 0]],
+        "forces": [
+            {"kind": "springs", "name": "bar", "particles": [[0, 1], [1, 2]], "stiffness": 8e11},
+            {"kind": "unary", "particles": [1], "vector": [1e9, 0, 0]},
+        ],
+        "anchors": [{"particles": [0, 2]}],
+    }
+    found = design(
+        {
+            "scene": scene,
+            "variables": [{"force": "bar", "field": "stiffness", "lower": 6e11, "upper": 9e11}],
+            "goals": [{"kind": "length", "force": "bar", "target": [1.0 + 1e9 / 1.4e12, 1.0 - 1e9 / 1.4e12]}],
+            "settings": {"method": "l-bfgs-b"},
+        }
+    )
+    assert found.status == "converged"
+    bars = found.scene.forces[0]
+    assert isinstance(bars, Springs) and np.sum(bars.stiffness) == pytest.approx(1.4e12, rel=1e-3)

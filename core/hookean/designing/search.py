@@ -101,7 +101,8 @@ class Search:
     def edges(self) -> tuple[Floats, Floats]:
         """The same where nothing else keeps a search from going on without end, or to numbers that nothing takes."""
         (lower, upper), start = self.bounds, self.unknowns.start
-        least, most = ((side * MOST - start) / self.scale for side in (-1.0, 1.0))
+        below, above = np.minimum(start, -MOST), np.maximum(start, MOST)  # a start beyond is kept
+        least, most = (below - start) / self.scale, (above - start) / self.scale
         return np.maximum(lower, np.maximum(least, -EDGE)), np.minimum(upper, np.minimum(most, EDGE))
 
     def given(self, y: Floats) -> Floats:
